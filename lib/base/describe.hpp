@@ -1,0 +1,100 @@
+#pragma once
+/// One declaration per described aggregate; the YAML reader, the schema, `explain` and the documentation are visitors of it.
+///
+/// A described type has a static member
+///
+///     template <class Self, class Visit>
+///     static void describe(Self& self, Visit& visit) {
+///       visit(base::Field{.key = "mass", .doc = "mass", .unit = base::dimension::mass, .range = base::positive}, self.mass);
+///     }
+///
+/// where `Self` is the type or its const. The type of the member says what is read: double (a quantity of dimension
+/// `unit`), int, bool, std::string, Vec3, std::optional<T>, std::vector<T>, a described type, or a type for which the
+/// reader has a specialisation. A member of a component family also has `static constexpr std::string_view name, doc`.
+#include <array>
+#include <limits>
+#include <string_view>
+
+namespace muldi::base {
+
+using Vec3 = std::array<double, 3>;
+
+/// Exponents of the base quantities; angle is a base of its own.
+struct Dimension {
+  int length = 0;
+  int mass = 0;
+  int time = 0;
+  int current = 0;
+  int angle = 0;
+
+  friend constexpr bool operator==(const Dimension&, const Dimension&) = default;
+};
+
+constexpr Dimension operator*(Dimension a, Dimension b) {
+  return {a.length + b.length, a.mass + b.mass, a.time + b.time, a.current + b.current, a.angle + b.angle};
+}
+constexpr Dimension operator/(Dimension a, Dimension b) {
+  return {a.length - b.length, a.mass - b.mass, a.time - b.time, a.current - b.current, a.angle - b.angle};
+}
+
+namespace dimension {
+inline constexpr Dimension none{};
+inline constexpr Dimension length{.length = 1};
+inline constexpr Dimension mass{.mass = 1};
+inline constexpr Dimension time{.time = 1};
+inline constexpr Dimension current{.current = 1};
+inline constexpr Dimension angle{.angle = 1};
+inline constexpr Dimension area = length * length;
+inline constexpr Dimension volume = area * length;
+inline constexpr Dimension density = mass / volume;
+inline constexpr Dimension velocity = length / time;
+inline constexpr Dimension acceleration = velocity / time;
+inline constexpr Dimension angular_velocity = angle / time;
+inline constexpr Dimension inertia = mass * area;
+inline constexpr Dimension momentum = mass * velocity;
+inline constexpr Dimension force = mass * acceleration;
+inline constexpr Dimension torque = force * length;  // no angle: N mm is N mm whatever turns
+inline constexpr Dimension energy = force * length;
+inline constexpr Dimension power = energy / time;
+inline constexpr Dimension stress = force / area;
+inline constexpr Dimension viscosity = stress * time;
+inline constexpr Dimension stiffness = force / length;
+inline constexpr Dimension damping = force / velocity;
+inline constexpr Dimension rotational_stiffness = torque / angle;
+inline constexpr Dimension rotational_damping = torque / angular_velocity;
+inline constexpr Dimension charge = current * time;
+inline constexpr Dimension voltage = power / current;
+inline constexpr Dimension field = voltage / length;
+inline constexpr Dimension permittivity = charge / (voltage * length);
+inline constexpr Dimension frequency = none / time;
+}  // namespace dimension
+
+/// Admissible numbers of a field; an open end excludes its value.
+struct Range {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool min_open = false;
+  bool max_open = false;
+};
+inline constexpr Range any{};
+inline constexpr Range positive{.min = 0.0, .min_open = true};
+inline constexpr Range non_negative{.min = 0.0};
+
+enum class Need { required, optional };
+
+/// What is known of a field beside its C++ type. `optional` fields keep the member's initial value as the default.
+struct Field {
+  std::string_view key;
+  std::string_view doc;
+  Dimension unit = dimension::none;
+  Range range = any;
+  Need need = Need::required;
+};
+
+/// A component family: its alternatives in the order of registration (registry.hpp of the folder).
+template <class... Components>
+struct TypeList {
+  static constexpr std::size_t size = sizeof...(Components);
+};
+
+}  // namespace muldi::base
