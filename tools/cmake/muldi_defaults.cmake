@@ -6,10 +6,26 @@ set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+# Modules opened on demand (Ipopt) hold code of the static libraries.
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 find_program(CCACHE ccache)
 if(CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
 endif()
+
+# The same bits on every machine: no -march=native, no -ffast-math, no fusing of products and sums. errno is never read.
+set(muldi_options -ffp-contract=off -fno-math-errno)
+if(MULDI_NATIVE)
+  list(APPEND muldi_options -march=native)
+endif()
+if(MULDI_SANITIZE)
+  # Optimised a little, or the tests take minutes; assertions on. This replaces the flags of the build type.
+  string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
+  set(CMAKE_CXX_FLAGS_${build_type} "-O1 -g1")
+  list(APPEND muldi_options -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer -D_GLIBCXX_ASSERTIONS)
+  add_link_options(-fsanitize=address,undefined)
+endif()
+add_compile_options(${muldi_options})
 
 # Warnings are errors, in this one place.
 add_library(muldi_warnings INTERFACE)
@@ -19,8 +35,4 @@ target_compile_options(muldi_warnings INTERFACE
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 reports false positives inside Eigen and the standard library at -O3.
   target_compile_options(muldi_warnings INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overflow -Wno-restrict)
-endif()
-if(MULDI_SANITIZE)
-  target_compile_options(muldi_warnings INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
-  target_link_options(muldi_warnings INTERFACE -fsanitize=address,undefined)
 endif()

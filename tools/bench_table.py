@@ -1,0 +1,60 @@
+#!/usr/bin/env python3
+"""Runs the benchmark programs of a build folder and collects their JSON: bench_table.py BUILD [PATTERN...]. See tools/bench."""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import time
+
+
+def run(program, build):
+    """The report of one program; None if it failed."""
+    print(f"{program.name} ...", file=sys.stderr, flush=True)
+    start = time.monotonic()
+    done = subprocess.run([str(program)], cwd=build, stdout=subprocess.PIPE, text=True)
+    try:
+        report = json.loads(done.stdout) if done.returncode == 0 else None
+    except json.JSONDecodeError:
+        report = None
+    if report is None:
+        print(f"{program.name} failed (exit code {done.returncode})", file=sys.stderr)
+        return None
+    report["wall_seconds"] = time.monotonic() - start
+    return report
+
+
+def rows(report):
+    for value in report["values"]:
+        bound = value.get("bound")
+        verdict = "" if bound is None else "within" if value["value"] is not None and value["value"] <= bound else "OVER"
+        figure = "nan" if value["value"] is None else f"{value['value']:.4g}"
+        yield report["name"], value["name"], figure, value["unit"], "" if bound is None else f"{bound:.4g}", verdict
+
+
+def main():
+    build = pathlib.Path(sys.argv[1]).resolve()
+    patterns = sys.argv[2:]
+    programs = [path for path in sorted((build / "bench").glob("bench_*")) if path.is_file() and os.access(path, os.X_OK)]
+    chosen = [path for path in programs if not patterns or any(pattern in path.name for pattern in patterns)]
+    if not chosen:
+        print("no such benchmark; there are: " + ", ".join(path.name for path in programs), file=sys.stderr)
+        return 2
+    reports = [run(program, build) for program in chosen]
+    good = [report for report in reports if report]
+    (build / "bench.json").write_text(json.dumps(good, indent=2) + "\n")
+    if good:
+        first = good[0]
+        print(f"{first['cpu']}, {first['cores']} cores; {first['compiler']} {first['flags']}; commit {first['commit']}")
+        table = [("program", "figure", "value", "unit", "bound", "")] + [row for report in good for row in rows(report)]
+        widths = [max(len(row[column]) for row in table) for column in range(6)]
+        for row in table:
+            print("  ".join(cell.rjust(width) if column in (2, 4) else cell.ljust(width)
+                            for column, (cell, width) in enumerate(zip(row, widths))).rstrip())
+    print(f"written: {build / 'bench.json'}", file=sys.stderr)
+    return 0 if len(good) == len(reports) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
