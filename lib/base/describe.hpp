@@ -1,19 +1,25 @@
 #pragma once
-/// One declaration per described aggregate; the YAML reader, the schema, `explain` and the documentation are visitors of it.
+/// One declaration per described aggregate; the YAML reader, the schema, `explain` and the documentation are visitors
+/// of it.
 ///
 /// A described type has a static member
 ///
 ///     template <class Self, class Visit>
 ///     static void describe(Self& self, Visit& visit) {
-///       visit(base::Field{.key = "mass", .doc = "mass", .unit = base::dimension::mass, .range = base::positive}, self.mass);
+///       visit(base::Field{.key = "mass", .doc = "mass", .unit = base::dimension::mass, .range = base::positive},
+///       self.mass);
 ///     }
 ///
 /// where `Self` is the type or its const. The type of the member says what is read: double (a quantity of dimension
-/// `unit`), int, bool, std::string, Vec3, std::optional<T>, std::vector<T>, a described type, or a type for which the
-/// reader has a specialisation. A member of a component family also has `static constexpr std::string_view name, doc`.
+/// `unit`), int, bool, std::string, Vec3, std::optional<T>, std::vector<T>, an enum with a `words()` overload (Word), a
+/// described type, or a type for which the reader has a specialisation. A member of a component family also has
+/// `static constexpr std::string_view name, doc`; a std::variant of the family (VariantOf) is visited with a Choice.
 #include <array>
+#include <cstddef>
 #include <limits>
+#include <string>
 #include <string_view>
+#include <variant>
 
 namespace muldi::base {
 
@@ -82,6 +88,9 @@ inline constexpr Range non_negative{.min = 0.0};
 
 enum class Need { required, optional };
 
+/// `> 0`, `>= 1 and <= 10`; empty for any number.
+std::string range_text(const Range& range);
+
 /// What is known of a field beside its C++ type. `optional` fields keep the member's initial value as the default.
 struct Field {
   std::string_view key;
@@ -91,10 +100,37 @@ struct Field {
   Need need = Need::required;
 };
 
+/// What is known of a choice between components: `key` takes the name of one, whose fields stand beside it.
+struct Choice {
+  std::string_view key;
+  std::string_view doc;
+};
+
+/// A key that the format knows but this version of the program does not read yet.
+struct Later {
+  std::string_view key;
+  std::string_view doc;
+};
+
+/// The word in the input for a value of an enum. An enum that is read has an overload, found by its arguments,
+/// `std::span<const Word<E>> words(E)` (any value) in the order of the documentation.
+template <class Enum>
+struct Word {
+  std::string_view word;
+  Enum value;
+  std::string_view doc;
+  bool later = false;  ///< known to the format, refused by this version of the program
+};
+
 /// A component family: its alternatives in the order of registration (registry.hpp of the folder).
 template <class... Components>
 struct TypeList {
   static constexpr std::size_t size = sizeof...(Components);
+  using Variant = std::variant<Components...>;
 };
+
+/// A value of one component of the family.
+template <class List>
+using VariantOf = typename List::Variant;
 
 }  // namespace muldi::base
