@@ -1,0 +1,44 @@
+#pragma once
+/// Quantities that a run records at the nodes in time: joint angles, muscle lengths, points, energies.
+#include <Eigen/Core>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/describe.hpp"
+
+namespace muldi::model {
+
+/// The complete state at a node in time, as observables see it.
+struct NodeView {
+  long serial = 0;  ///< differs from view to view, so that values for several series are computed once
+  double t = 0.0;
+  const Eigen::VectorXd& x;                 ///< coordinates of the manifold (n_x)
+  const Eigen::VectorXd& rate;              ///< minimal velocities (n_v), from the momenta by the mass matrix
+  const Eigen::VectorXd& q;                 ///< configuration (n_q)
+  const Eigen::VectorXd& v;                 ///< T rate (n_q)
+  const Eigen::VectorXd& constraint_force;  ///< -G^T lambda on the right of the equation of motion (n_q)
+  const Eigen::VectorXd& multipliers;       ///< lambda of the loop-closing joints (n_c)
+  std::span<const double> u;                ///< controls of the interval that ends here (at t_0: of the first)
+};
+
+/// One recorded series: a fixed number of doubles a row.
+struct Observable {
+  std::string path;                ///< path in the result file, e.g. "muscles/upper/length"
+  std::vector<std::size_t> shape;  ///< {} scalar, {3}, {3, 3} ...
+  base::Dimension unit;
+  std::string doc;
+  /// Writes the row; on entry `out` holds the previous row of the series (zeros before the first).
+  std::function<void(const NodeView&, std::span<double> out)> evaluate;
+
+  bool of_motion = false;  ///< zero at rest: not recorded in statics
+
+  std::size_t size() const {
+    std::size_t n = 1;
+    for (const std::size_t extent : shape) n *= extent;
+    return n;
+  }
+};
+
+}  // namespace muldi::model
