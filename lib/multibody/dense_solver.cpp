@@ -1,0 +1,102 @@
+/// Joint-space Newton matrix with the loop rows, one dense LU.
+#include <Eigen/LU>
+
+#include "base/error.hpp"
+#include "multibody/projected_solvers.hpp"
+#include "multibody/tree_manifold.hpp"
+
+namespace muldi::multibody {
+namespace {
+
+class DenseSolver final : public model::ProjectedSolver {
+ public:
+  explicit DenseSolver(const TreeManifold& manifold)
+      : manifold_(manifold),
+        n_(manifold.n_v() + manifold.n_c()),
+        A_(n_, n_),
+        left_rows_(manifold.n_c(), manifold.n_v()),
+        right_rows_(manifold.n_c(), manifold.n_v()),
+        lu_(n_),
+        unit_(Eigen::VectorXd::Zero(manifold.n_v())),
+        dq_(manifold.n_q()),
+        df_(manifold.n_q()),
+        column_(manifold.n_v()),
+        rhs_(n_),
+        solution_(n_) {}
+
+  bool factorise(const model::Frame& left, const model::Frame& right, const math::BlockMatrix& K) override {
+    const int n_v = manifold_.n_v();
+    for (int k = 0; k < n_v; ++k) {
+      unit_[k] = 1.0;
+      manifold_.lift(right, unit_, dq_);
+      unit_[k] = 0.0;
+      K.multiply(dq_, df_);
+      manifold_.project(left, df_, column_);
+      A_.col(k).head(n_v) = column_;
+    }
+    if (manifold_.n_c() > 0) {
+      manifold_.project_constraints(left, left_rows_);
+      manifold_.project_constraints(right, right_rows_);
+      A_.topRightCorner(n_v, manifold_.n_c()) = left_rows_.transpose();
+      A_.bottomLeftCorner(manifold_.n_c(), n_v) = right_rows_;
+      A_.bottomRightCorner(manifold_.n_c(), manifold_.n_c()).setZero();
+    }
+    if (n_ == 0) return true;
+    lu_.compute(A_);
+    const auto pivots = lu_.matrixLU().diagonal().cwiseAbs();
+    return std::isfinite(pivots.maxCoeff()) && pivots.minCoeff() > 0.0;
+  }
+
+  void solve(const Eigen::VectorXd& r, const Eigen::VectorXd& g, Eigen::VectorXd& w, Eigen::VectorXd& lambda) override {
+    if (n_ == 0) return;
+    rhs_.head(manifold_.n_v()) = r;
+    rhs_.tail(manifold_.n_c()) = g;
+    solution_.noalias() = lu_.permutationP() * rhs_;
+    lu_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(solution_);
+    lu_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(solution_);
+    w = solution_.head(manifold_.n_v());
+    lambda = solution_.tail(manifold_.n_c());
+  }
+
+  std::string name() const override { return "dense"; }
+
+ private:
+  const TreeManifold& manifold_;
+  int n_;
+  Eigen::MatrixXd A_;
+  Eigen::MatrixXd left_rows_;
+  Eigen::MatrixXd right_rows_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+  Eigen::VectorXd unit_;
+  Eigen::VectorXd dq_;
+  Eigen::VectorXd df_;
+  Eigen::VectorXd column_;
+  Eigen::VectorXd rhs_;
+  Eigen::VectorXd solution_;
+};
+
+/// Up to this size the dense matrix is the faster one where the tree solver does not apply.
+constexpr int dense_limit = 60;
+
+}  // namespace
+
+std::unique_ptr<model::ProjectedSolver> make_dense_solver(const TreeManifold& manifold) {
+  return std::make_unique<DenseSolver>(manifold);
+}
+
+std::unique_ptr<model::ProjectedSolver> make_projected_solver(const TreeManifold& manifold,
+                                                              const math::BlockPattern& pattern,
+                                                              const std::string& kind) {
+  const bool local = is_tree_local(manifold, pattern);
+  if (kind == "tree" && !local) {
+    throw base::InputError(
+        "solver.linear: 'tree' needs a system without loops whose muscles and springs join neighbours in the tree; "
+        "use auto, dense or bordered");
+  }
+  if (kind == "tree" || (kind == "auto" && local)) return make_tree_solver(manifold, pattern);
+  if (kind == "bordered" || (kind == "auto" && manifold.n_v() > dense_limit))
+    return make_bordered_solver(manifold, pattern);
+  return make_dense_solver(manifold);
+}
+
+}  // namespace muldi::multibody

@@ -1,0 +1,130 @@
+#include "multibody/joint_coordinate.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "base/error.hpp"
+
+namespace muldi::multibody {
+
+JointCoordinate::JointCoordinate(const Joint& joint, const Motion& motion, int x_index)
+    : is_angle_(motion.is_angle()), x_index_(x_index) {
+  MULDI_EXPECT(motion.kind != Motion::Kind::ball, "a ball has no scalar coordinates");
+  for (const int body : {joint.body_a, joint.body_b}) {
+    if (body != ground) nodes_[static_cast<std::size_t>(n_nodes_++)] = body;
+  }
+  const auto e_a = [&](int k) { return body_direction(joint.body_a, joint.triad_a.col(k)); };
+  const auto e_b = [&](int k) { return body_direction(joint.body_b, joint.triad_b.col(k)); };
+  if (!is_angle_) {
+    slide_ = {.a = e_a(motion.axis),
+              .b = body_point(joint.body_b, joint.rho_b) - body_point(joint.body_a, joint.rho_a),
+              .constant = joint.offset[motion.axis]};
+    return;
+  }
+  for (std::size_t k = 0; k < 2; ++k) {
+    sine_[k] = {{.a = e_a(motion.sine[k].a), .b = e_b(motion.sine[k].b)}, motion.sine[k].sign};
+    cosine_[k] = {{.a = e_a(motion.cosine[k].a), .b = e_b(motion.cosine[k].b)}, motion.cosine[k].sign};
+  }
+}
+
+JointCoordinate::SineCosine JointCoordinate::sine_cosine(const Eigen::VectorXd& q) const {
+  SineCosine result{0.0, 0.0};
+  for (const Product& product : sine_) result.sine += product.sign == 0.0 ? 0.0 : product.sign * product.form.value(q);
+  for (const Product& product : cosine_) {
+    result.cosine += product.sign == 0.0 ? 0.0 : product.sign * product.form.value(q);
+  }
+  return result;
+}
+
+double JointCoordinate::value(const Eigen::VectorXd& q, std::span<const double> x0, std::span<const double> x1) const {
+  if (!is_angle_) return slide_.value(q);
+  const auto [sine, cosine] = sine_cosine(q);
+  const double angle = std::atan2(sine, cosine);
+  if (x_index_ < 0 || x0.empty()) return angle;
+  const auto at = static_cast<std::size_t>(x_index_);
+  constexpr double turn = 2.0 * std::numbers::pi;
+  return angle + turn * std::round((0.5 * (x0[at] + x1[at]) - angle) / turn);
+}
+
+void JointCoordinate::local_gradient(const model::Bilinear& form, const Eigen::VectorXd& q, double factor,
+                                     LocalVector& out) const {
+  const auto add = [&](const model::LinearPoint& point, const Eigen::Vector3d& direction) {
+    for (int k = 0; k < point.n; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      out.segment<3>(local(point.node[at], point.dof[at])) += factor * point.weight[at] * direction;
+    }
+  };
+  add(form.a, form.b.value(q));
+  add(form.b, form.a.value(q));
+}
+
+void JointCoordinate::local_hessian(const model::Bilinear& form, double factor, LocalMatrix& out) const {
+  for (int i = 0; i < form.a.n; ++i) {
+    for (int j = 0; j < form.b.n; ++j) {
+      const auto a = static_cast<std::size_t>(i);
+      const auto b = static_cast<std::size_t>(j);
+      const double weight = factor * form.a.weight[a] * form.b.weight[b];
+      const int row = local(form.a.node[a], form.a.dof[a]);
+      const int column = local(form.b.node[b], form.b.dof[b]);
+      for (int k = 0; k < 3; ++k) {
+        out(row + k, column + k) += weight;
+        out(column + k, row + k) += weight;
+      }
+    }
+  }
+}
+
+void JointCoordinate::derivatives(const Eigen::VectorXd& q, LocalVector& gradient, LocalMatrix& hessian) const {
+  gradient.setZero();
+  hessian.setZero();
+  if (!is_angle_) {
+    local_gradient(slide_, q, 1.0, gradient);
+    local_hessian(slide_, 1.0, hessian);
+    return;
+  }
+  // theta = atan2(S, C): grad = (C S' - S C')/r2, r2 = S^2 + C^2,
+  // Hessian = (C S'' - S C'')/r2 - 2 sym(grad (x) (S S' + C C'))/r2.
+  const auto [S, C] = sine_cosine(q);
+  const double r2 = S * S + C * C;
+  LocalVector grad_S = LocalVector::Zero();
+  LocalVector grad_C = LocalVector::Zero();
+  for (const Product& product : sine_) {
+    if (product.sign == 0.0) continue;
+    local_gradient(product.form, q, product.sign, grad_S);
+    local_hessian(product.form, product.sign * C / r2, hessian);
+  }
+  for (const Product& product : cosine_) {
+    if (product.sign == 0.0) continue;
+    local_gradient(product.form, q, product.sign, grad_C);
+    local_hessian(product.form, -product.sign * S / r2, hessian);
+  }
+  gradient = (C * grad_S - S * grad_C) / r2;
+  const LocalVector radial = (S * grad_S + C * grad_C) / r2;
+  hessian.noalias() -= gradient * radial.transpose() + radial * gradient.transpose();
+}
+
+double JointCoordinate::rate(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const {
+  if (!is_angle_) return slide_.rate(q, v);
+  const auto [S, C] = sine_cosine(q);
+  double rate = 0.0;
+  for (const Product& product : sine_) rate += product.sign == 0.0 ? 0.0 : C * product.sign * product.form.rate(q, v);
+  for (const Product& product : cosine_) rate -= product.sign == 0.0 ? 0.0 : S * product.sign * product.form.rate(q, v);
+  return rate / (S * S + C * C);
+}
+
+void JointCoordinate::add_gradient(const Eigen::VectorXd& q, double factor, Eigen::VectorXd& f) const {
+  if (!is_angle_) {
+    slide_.add_gradient(q, factor, f);
+    return;
+  }
+  const auto [S, C] = sine_cosine(q);
+  const double r2 = S * S + C * C;
+  for (const Product& product : sine_) {
+    if (product.sign != 0.0) product.form.add_gradient(q, factor * product.sign * C / r2, f);
+  }
+  for (const Product& product : cosine_) {
+    if (product.sign != 0.0) product.form.add_gradient(q, -factor * product.sign * S / r2, f);
+  }
+}
+
+}  // namespace muldi::multibody

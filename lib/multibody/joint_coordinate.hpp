@@ -1,0 +1,56 @@
+#pragma once
+/// A scalar joint coordinate as a function of q, with gradient and Hessian: springs, dampers, drives and stops act on
+/// it.
+#include <array>
+#include <span>
+
+#include "model/bilinear.hpp"
+#include "multibody/joint.hpp"
+
+namespace muldi::multibody {
+
+/// A slide z = e_axis^A . p - z_0, or an angle theta = atan2(S, C) with S, C sums of products e_a^A . e_b^B.
+class JointCoordinate {
+ public:
+  /// `motion` must not be a ball. `x_index`: the coordinate's place in x, or -1 (angles then stay in (-pi, pi]).
+  JointCoordinate(const Joint& joint, const Motion& motion, int x_index);
+
+  bool is_angle() const { return is_angle_; }
+  /// The value nearest to the stored coordinates x (mean of x0 and x1), which count whole turns.
+  double value(const Eigen::VectorXd& q, std::span<const double> x0, std::span<const double> x1) const;
+  double rate(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const;
+  /// f += factor grad.
+  void add_gradient(const Eigen::VectorXd& q, double factor, Eigen::VectorXd& f) const;
+
+  /// Unknowns of the (one or two) bodies: at most 24, those of nodes()[0] come first.
+  std::span<const int> nodes() const { return {nodes_.data(), static_cast<std::size_t>(n_nodes_)}; }
+  static constexpr int max_size = 24;
+  using LocalVector = Eigen::Matrix<double, max_size, 1>;
+  using LocalMatrix = Eigen::Matrix<double, max_size, max_size>;
+  /// Gradient and Hessian in local unknowns (node by node).
+  void derivatives(const Eigen::VectorXd& q, LocalVector& gradient, LocalMatrix& hessian) const;
+
+ private:
+  struct Product {
+    model::Bilinear form;
+    double sign = 0.0;
+  };
+  struct SineCosine {
+    double sine;
+    double cosine;
+  };
+  SineCosine sine_cosine(const Eigen::VectorXd& q) const;
+  void local_gradient(const model::Bilinear& form, const Eigen::VectorXd& q, double factor, LocalVector& out) const;
+  void local_hessian(const model::Bilinear& form, double factor, LocalMatrix& out) const;
+  int local(int node, int dof) const { return dof - 12 * node + (nodes_[0] == node ? 0 : 12); }
+
+  bool is_angle_ = false;
+  int x_index_ = -1;
+  model::Bilinear slide_;
+  std::array<Product, 2> sine_{};
+  std::array<Product, 2> cosine_{};
+  std::array<int, 2> nodes_{-1, -1};
+  int n_nodes_ = 0;
+};
+
+}  // namespace muldi::multibody

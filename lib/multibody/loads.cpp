@@ -1,0 +1,88 @@
+#include "multibody/loads.hpp"
+
+#include <Eigen/Geometry>
+
+#include "math/rotation.hpp"
+
+namespace muldi::multibody {
+namespace {
+
+/// Weights of phi, d1, d2, d3 in the position of a point.
+Eigen::Vector4d weights_of(const Eigen::Vector3d& point) { return {1.0, point.x(), point.y(), point.z()}; }
+
+Eigen::Vector3d world_direction(const Load& load, const Eigen::VectorXd& q) {
+  if (load.frame == Load::Frame::world) return load.direction;
+  return Eigen::Map<const Eigen::Matrix3d>(q.data() + 12 * load.body + 3) * load.direction;
+}
+
+}  // namespace
+
+Loads::LocalForce Loads::unit_force(const Load& load, const Eigen::VectorXd& q) {
+  const Eigen::Vector3d direction = world_direction(load, q);
+  LocalForce f = LocalForce::Zero();
+  if (load.kind == Load::Kind::force) {
+    const Eigen::Vector4d weights = weights_of(load.point);
+    for (int k = 0; k < 4; ++k) f.segment<3>(3 * k) = weights[k] * direction;
+  } else {
+    // sum d_i x (tau x d_i)/2 = tau: the torque as forces on the directors.
+    for (int k = 0; k < 3; ++k) {
+      f.segment<3>(3 + 3 * k) = 0.5 * direction.cross(Eigen::Vector3d(q.segment<3>(12 * load.body + 3 + 3 * k)));
+    }
+  }
+  return f;
+}
+
+void Loads::bind(const math::BlockPattern& pattern) {
+  slots_.clear();
+  for (const Load& load : loads_) slots_.push_back(pattern.slot(load.body, load.body));
+}
+
+void Loads::add_forces(const model::IntervalPoint& at, model::IntervalForces& out) const {
+  for (const Load& load : loads_) {
+    out.force.segment<12>(12 * load.body) += load.magnitude(at.u) * unit_force(load, at.q);
+  }
+}
+
+void Loads::add_tangent(const model::IntervalPoint& at, const model::TangentWeights& weights,
+                        math::BlockMatrix& K) const {
+  if (weights.qq == 0.0) return;
+  for (std::size_t l = 0; l < loads_.size(); ++l) {
+    const Load& load = loads_[l];
+    const double factor = weights.qq * load.magnitude(at.u);
+    Eigen::Map<Eigen::Matrix<double, 12, 12, Eigen::RowMajor>, 0, Eigen::OuterStride<>> block(
+        K.data(slots_[l]), Eigen::OuterStride<>(slots_[l].stride));
+    const bool follows = load.frame == Load::Frame::body;
+    if (load.kind == Load::Kind::force) {
+      if (!follows) continue;
+      const Eigen::Vector4d w = weights_of(load.point);
+      for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 3; ++j) {
+          block.block<3, 3>(3 * i, 3 + 3 * j).diagonal().array() += factor * w[i] * load.direction[j];
+        }
+      continue;
+    }
+    const Eigen::Matrix3d turn = 0.5 * factor * math::hat(world_direction(load, at.q));
+    for (int i = 0; i < 3; ++i) {
+      block.block<3, 3>(3 + 3 * i, 3 + 3 * i) += turn;
+      if (!follows) continue;
+      const Eigen::Matrix3d d = 0.5 * factor * math::hat(Eigen::Vector3d(at.q.segment<3>(12 * load.body + 3 + 3 * i)));
+      for (int j = 0; j < 3; ++j) block.block<3, 3>(3 + 3 * i, 3 + 3 * j) -= load.direction[j] * d;
+    }
+  }
+}
+
+void Loads::add_control_force(const model::IntervalPoint& at, int control, Eigen::VectorXd& out) const {
+  for (const Load& load : loads_) {
+    if (load.control == control) out.segment<12>(12 * load.body) += load.control_factor * unit_force(load, at.q);
+  }
+}
+
+model::IntervalWork Loads::work(const model::IntervalPoint& at) const {
+  model::IntervalWork work;
+  for (const Load& load : loads_) {
+    work.external += at.dt * load.magnitude(at.u) * unit_force(load, at.q).dot(at.v.segment<12>(12 * load.body));
+  }
+  return work;
+}
+
+}  // namespace muldi::multibody

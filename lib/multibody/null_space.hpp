@@ -1,0 +1,56 @@
+#pragma once
+/// The null-space matrix of a whole tree in factored form, T = T_int T_ext (numerics, 1.6, 1.7): never a matrix
+/// product, but the recursion t_B = T_a t_A + T_b w over the links, with twists t = (v, omega) of the bodies.
+#include <Eigen/Core>
+#include <Eigen/QR>
+#include <vector>
+
+#include "model/manifold.hpp"
+#include "multibody/kinematic_tree.hpp"
+
+namespace muldi::multibody {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Twists = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+/// Data of one link at one configuration.
+struct LinkFrame {
+  Pose pose;                                      ///< of the body
+  Eigen::Vector3d arm = Eigen::Vector3d::Zero();  ///< body minus parent position: T_a = [1 -hat(arm); 0 1]
+  Eigen::Vector3d lever =
+      Eigen::Vector3d::Zero();  ///< from the body that hangs to the point that turns with zero slide rate
+  Eigen::Matrix<double, 6, 6> columns = Eigen::Matrix<double, 6, 6>::Zero();  ///< T_b in the first n_rates columns
+};
+
+/// T(q) of a TreeManifold; scratch twists are part of it, so projections allocate nothing.
+struct TreeFrame : model::Frame {
+  std::vector<LinkFrame> links;      ///< as KinematicTree::links
+  mutable Twists twists;             ///< (6, n_links) scratch
+  mutable Eigen::VectorXd q;         ///< (n_q) scratch of the loop rows, empty without loops
+  mutable Eigen::VectorXd gradient;  ///< (n_q)
+  mutable Eigen::VectorXd row;       ///< (n_v)
+  mutable Eigen::MatrixXd rows;      ///< (n_c, n_v)
+  mutable Eigen::ColPivHouseholderQR<Eigen::MatrixXd> loop_pivots;  ///< of rows^T
+};
+
+/// Recomputes the frame from the poses in q (directors at 12 body + 3).
+void update_frame(const KinematicTree& tree, const Eigen::VectorXd& q, TreeFrame& frame);
+
+/// Twists of all links (columns) for minimal velocities w.
+void twists_of(const KinematicTree& tree, const TreeFrame& frame, const Eigen::VectorXd& w, Twists& twists);
+/// dq = T_int t for all bodies.
+void lift_twists(const KinematicTree& tree, const TreeFrame& frame, const Twists& twists, Eigen::VectorXd& dq);
+/// Wrenches T_int^T f of all links, about their centres of mass.
+void wrenches_of(const KinematicTree& tree, const TreeFrame& frame, const Eigen::VectorXd& f, Twists& wrenches);
+/// Adds every link's wrench to its parent, leaves first, so that column l holds the wrench of the subtree of l.
+void accumulate_wrenches(const KinematicTree& tree, const TreeFrame& frame, Twists& wrenches);
+/// r = T_b^T W with accumulated wrenches.
+void joint_forces_of(const KinematicTree& tree, const TreeFrame& frame, const Twists& accumulated, Eigen::VectorXd& r);
+
+/// d(T(q)^T f)/dt along the velocity w with f frozen; `twists` are those of w, `wrenches` the plain and `accumulated`
+/// the accumulated wrenches of f.
+void projection_rate(const KinematicTree& tree, const TreeFrame& frame, const Twists& twists, const Eigen::VectorXd& f,
+                     const Twists& accumulated, Eigen::VectorXd& rate);
+
+}  // namespace muldi::multibody

@@ -1,0 +1,66 @@
+#pragma once
+/// The constraint manifold of rigid multibody systems: trees on their own manifold, loops by multipliers, and plain
+/// scalar unknowns (free lengths) beside the bodies.
+#include <vector>
+
+#include "multibody/null_space.hpp"
+
+namespace muldi::multibody {
+
+class TreeManifold final : public model::Manifold {
+ public:
+  /// `poses` (n_bodies): the scene pose, in which tree joints have coordinate zero. `plain`: reference values of scalar
+  /// unknowns; they are the nodes after the bodies. `length`: size of the scene.
+  /// InputError if a loop-closing joint does not close in the scene pose.
+  TreeManifold(KinematicTree tree, const std::vector<Pose>& poses, std::vector<double> plain, double length);
+
+  int n_x() const override { return tree_.n_coordinates + n_plain(); }
+  int n_q() const override { return 12 * tree_.n_bodies + n_plain(); }
+  int n_v() const override { return tree_.n_rates + n_plain(); }
+  int n_c() const override { return static_cast<int>(rows_.size()); }
+  Eigen::VectorXd rate_scale() const override;
+  Eigen::VectorXd reference() const override { return reference_; }
+  void configuration(const Eigen::VectorXd& x, Eigen::VectorXd& q) const override;
+  void retract(const Eigen::VectorXd& x, const Eigen::VectorXd& w, Eigen::VectorXd& x_new) const override;
+  void difference(const Eigen::VectorXd& x_from, const Eigen::VectorXd& x_to, Eigen::VectorXd& w) const override;
+  std::unique_ptr<model::Frame> make_frame() const override;
+  void update(const Eigen::VectorXd& x, const Eigen::VectorXd& q, model::Frame& frame) const override;
+  void project(const model::Frame& frame, const Eigen::VectorXd& f, Eigen::VectorXd& r) const override;
+  void lift(const model::Frame& frame, const Eigen::VectorXd& w, Eigen::VectorXd& dq) const override;
+  void constraints(const Eigen::VectorXd& q, Eigen::VectorXd& g) const override;
+  void add_constraint_forces(const Eigen::VectorXd& q, double factor, const Eigen::VectorXd& lambda,
+                             Eigen::VectorXd& f) const override;
+  double violation(const Eigen::VectorXd& q) const override;
+  void project_tangent(const model::Frame& left, const model::Frame& right, const math::BlockMatrix& K,
+                       Eigen::MatrixXd& A) const override;
+  void project_constraints(const model::Frame& frame, Eigen::MatrixXd& B) const override;
+  void add_curvature(const model::Frame& frame, const Eigen::VectorXd& f, const Eigen::VectorXd& lambda,
+                     Eigen::MatrixXd& A) const override;
+  std::unique_ptr<model::ProjectedSolver> make_solver(const math::BlockPattern& pattern,
+                                                      const std::string& kind) const override;
+  double loop_regularity(const model::Frame& frame) const override;
+  double largest_rotation(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to) const override;
+
+  const KinematicTree& tree() const { return tree_; }
+  int n_plain() const { return n_plain_; }
+  /// Independent loop rows, those found redundant, and which cut joint each independent row belongs to.
+  const std::vector<model::Bilinear>& loop_rows() const { return rows_; }
+  const std::vector<model::Bilinear>& redundant_rows() const { return redundant_; }
+  const std::vector<int>& loop_row_joint() const { return row_joint_; }
+  /// Rows of all constraints of directors and tree joints, for tests and for `violation`.
+  const std::vector<model::Bilinear>& tree_rows() const { return tree_rows_; }
+
+ private:
+  void select_independent_rows();
+
+  KinematicTree tree_;
+  int n_plain_ = 0;
+  double length_ = 1.0;
+  Eigen::VectorXd reference_;
+  std::vector<model::Bilinear> rows_;
+  std::vector<int> row_joint_;
+  std::vector<model::Bilinear> redundant_;
+  std::vector<model::Bilinear> tree_rows_;
+};
+
+}  // namespace muldi::multibody
