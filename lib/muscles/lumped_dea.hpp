@@ -1,0 +1,192 @@
+#pragma once
+/// The lumped dielectric elastomer muscle: homogeneous uniaxial stretch at constant volume (thesis 7.2, numerics 1.10).
+///
+/// With the length z, the reference length Z, the stretch L = z/Z, the volume V = A Z and the nominal field E:
+///
+///     T  = axial inertia b z^-3 zd^2 + c zd^2 and the inertia of the ends
+///     Pi = V [ mu/2 (L^2 + 2/L - 3) + E^2 w(L) ]
+///     f  = -3/2 eta V zd / z^2
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "base/describe.hpp"
+#include "muscles/axial.hpp"
+#include "muscles/electric_law.hpp"
+#include "muscles/section.hpp"
+
+namespace muldi::muscles {
+
+/// Inertia of the muscle in a multibody system (numerics C9).
+enum class Inertia { consistent, thesis };
+
+inline constexpr std::array<base::Word<Inertia>, 2> inertia_words{
+    {{.word = "consistent", .value = Inertia::consistent, .doc = "a uniform rod, with its rotational inertia"},
+     {.word = "thesis",
+      .value = Inertia::thesis,
+      .doc = "a point mass at the centre and the axial rate (thesis 7.2.5)"}}};
+constexpr std::span<const base::Word<Inertia>> words(Inertia) { return inertia_words; }
+
+/// What a scene says under `lumped:` of a muscle; the optional fields replace the muscle's own for this model.
+struct LumpedModel {
+  static constexpr std::string_view name = "lumped";
+  static constexpr std::string_view doc = "one uniform axial stretch between two points";
+
+  Inertia inertia = Inertia::consistent;
+  std::optional<Section> section;
+  std::optional<double> young;
+  std::optional<double> shear_modulus;
+  std::optional<double> viscosity;
+  std::optional<double> density;
+  std::optional<double> relative_permittivity;
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit& visit) {
+    using base::Field;
+    using base::Need;
+    visit(Field{.key = "inertia", .doc = "inertia of the muscle", .need = Need::optional}, self.inertia);
+    visit(Field{.key = "section", .doc = "replaces the muscle's section", .need = Need::optional}, self.section);
+    visit(Field{.key = "young",
+                .doc = "replaces Young's modulus of the material, with its Poisson's ratio",
+                .unit = base::dimension::stress,
+                .range = base::positive,
+                .need = Need::optional},
+          self.young);
+    visit(Field{.key = "mu",
+                .doc = "replaces the shear modulus of the material",
+                .unit = base::dimension::stress,
+                .range = base::positive,
+                .need = Need::optional},
+          self.shear_modulus);
+    visit(Field{.key = "viscosity",
+                .doc = "replaces the viscosity of the material",
+                .unit = base::dimension::viscosity,
+                .range = base::non_negative,
+                .need = Need::optional},
+          self.viscosity);
+    visit(Field{.key = "density",
+                .doc = "replaces the density of the material",
+                .unit = base::dimension::density,
+                .range = base::positive,
+                .need = Need::optional},
+          self.density);
+    visit(Field{.key = "relative_permittivity",
+                .doc = "replaces the electric law of the material by an ideal dielectric",
+                .range = {.min = 1.0},
+                .need = Need::optional},
+          self.relative_permittivity);
+  }
+
+  friend bool operator==(const LumpedModel&, const LumpedModel&) = default;
+};
+
+/// The muscle as a two-point element. The control is the nominal field E (voltage over reference length).
+struct LumpedDea {
+  static constexpr std::string_view folder = "muscles";
+  static constexpr std::string_view noun = "muscle";
+  static constexpr int n_controls = 1;
+  static constexpr double least_stretch = 0.2;  ///< below it the model has long lost its meaning (numerics 1.10)
+
+  double shear_modulus = 0.0;  ///< mu
+  double viscosity = 0.0;      ///< eta
+  double density = 0.0;        ///< rho0
+  double length = 0.0;         ///< Z, reference length
+  double area = 0.0;           ///< A, reference area of the section
+  double shape_factor = 1.0;   ///< k of the section
+  ElectricLaw electric_law{};
+  Inertia inertia = Inertia::consistent;
+
+  double volume() const { return area * length; }
+  double mass() const { return density * volume(); }
+
+  /// m/6 (v1.v1 + v1.v2 + v2.v2), a rod; thesis: m/2 of the mean velocity.
+  EndMass end_mass() const {
+    const double m = mass();
+    if (inertia == Inertia::thesis) return {.m11 = 0.25 * m, .m12 = 0.25 * m, .m22 = 0.25 * m};
+    return {.m11 = m / 3.0, .m12 = m / 6.0, .m22 = m / 3.0};
+  }
+
+  /// b zd^2 / z^3: lateral expansion; thesis: and c zd^2, which the rod holds in its ends (thesis 7.47, 7.60).
+  template <class S>
+  S kinetic(const S& z, const S& zd) const {
+    return (lateral_inertia() / (z * z * z) + axial_inertia()) * zd * zd;
+  }
+  template <class S>
+  S elastic(const S& z) const {
+    const S stretch = z / length;
+    return 0.5 * volume() * shear_modulus * (stretch * stretch + 2.0 / stretch - 3.0);
+  }
+  /// Electric enthalpy: -1/2 C U^2.
+  template <class S>
+  S electric(const S& z, const Controls<S, 1>& field) const {
+    return volume() * field[0] * field[0] * electric_law.w(S(z / length));
+  }
+  template <class S>
+  S force(const S& z, const S& zd, const Controls<S, 1>&) const {
+    return -1.5 * viscosity * volume() * zd / (z * z);
+  }
+
+  template <class S>
+  AxialDerivatives<S, 1> axial(const S& z, const S& zd, const Controls<S, 1>& field) const {
+    const S stretch = z / length;
+    const S i = 1.0 / z;
+    const S b3 = lateral_inertia() * i * i * i;
+    const S rate = zd * i;
+    const S drag = 1.5 * viscosity * volume() * i * i;
+    return {.l_z = -3.0 * b3 * rate * zd - potential_z(stretch, field[0]),
+            .l_d = 2.0 * (b3 + axial_inertia()) * zd,
+            .l_zz = 12.0 * b3 * rate * rate - potential_zz(stretch, field[0]),
+            .l_zd = -6.0 * b3 * rate,
+            .l_dd = 2.0 * (b3 + axial_inertia()),
+            .f = -drag * zd,
+            .f_z = 2.0 * drag * rate,
+            .f_d = -drag,
+            .h_e = {-2.0 * area * field[0] * electric_law.w_L(stretch)}};
+  }
+
+  std::string inadmissible(double z) const;
+
+  /// dPi/dz at stretch L and nominal field E: the force with which the charged muscle pulls at rest.
+  template <class S>
+  S potential_z(const S& stretch, const S& field) const {
+    return area * (shear_modulus * (stretch - 1.0 / (stretch * stretch)) + field * field * electric_law.w_L(stretch));
+  }
+  /// d2Pi/dz2; its change of sign is the pull-in of the free muscle.
+  template <class S>
+  S potential_zz(const S& stretch, const S& field) const {
+    const S i = 1.0 / stretch;
+    return area / length * (shear_modulus * (1.0 + 2.0 * i * i * i) + field * field * electric_law.w_LL(stretch));
+  }
+
+  /// Force with which the muscle pulls its ends together, inertia apart: dPi/dz - f; > 0 in tension.
+  double pull(double z, double zd, double field) const {
+    return potential_z(z / length, field) - force(z, zd, Controls<double, 1>{field});
+  }
+  /// Field in the deformed muscle, E / L.
+  double true_field(double z, double field) const { return field * length / z; }
+  /// Charge on one layer, -dOmega/dE A; the sign of the field. It does not depend on the layer's thickness.
+  double layer_charge(double z, double field) const { return -2.0 * area * field * electric_law.w(z / length); }
+  /// Capacitance of one layer of reference thickness t.
+  double layer_capacitance(double z, double t) const { return -2.0 * area * electric_law.w(z / length) / t; }
+  /// Compressive force under which a slender pinned muscle buckles: pi^2 W'' I / z^2, W'' the axial tangent modulus at
+  /// this stretch and field; (3 mu - 3 eps E^2) I pi^2 / Z^2 for an ideal dielectric at L = 1. 0 beyond pull-in.
+  double buckling_load(double z, double field) const {
+    const double second_moment = shape_factor * area * area / 12.0;
+    const double modulus = potential_zz(z / length, field) * length / area;
+    return std::max(0.0, std::numbers::pi * std::numbers::pi * modulus * second_moment / (z * z));
+  }
+
+ private:
+  double lateral_inertia() const { return shape_factor * mass() * volume() / 48.0; }
+  double axial_inertia() const { return inertia == Inertia::thesis ? mass() / 24.0 : 0.0; }
+};
+
+/// Nominal field a volt of layer voltage: 1/t; of total voltage over the whole length: 1/Z (numerics 1.10).
+constexpr double field_per_layer_voltage(double layer_thickness) { return 1.0 / layer_thickness; }
+constexpr double field_per_total_voltage(double length) { return 1.0 / length; }
+
+}  // namespace muldi::muscles

@@ -1,0 +1,149 @@
+#pragma once
+/// All elements of one type between two points, as one interval term.
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/interval_term.hpp"
+#include "model/linear_point.hpp"
+#include "muscles/from_energy.hpp"
+#include "muscles/point_scatter.hpp"
+#include "muscles/two_point.hpp"
+
+namespace muldi::muscles {
+
+/// Where an element takes a control value from: a control of the model, or a constant.
+struct ControlInput {
+  int control = -1;       ///< index in the model's controls; -1: `constant`
+  double constant = 0.0;  ///< in the element's unit
+  double factor = 1.0;    ///< from the control's unit to the element's, e.g. 1/t from layer voltage to field
+
+  double value(std::span<const double> u) const {
+    return control < 0 ? constant : factor * u[static_cast<std::size_t>(control)];
+  }
+};
+
+/// One named element with its ends.
+template <TwoPointElement Element>
+struct TwoPointComponent {
+  std::string name;
+  Element element;
+  model::LinearPoint a1;
+  model::LinearPoint a2;
+  std::array<ControlInput, static_cast<std::size_t>(Element::n_controls)> controls{};
+
+  /// The state at configuration q, velocity v and controls u.
+  TwoPoint<double, Element::n_controls> state(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
+                                              std::span<const double> u) const {
+    TwoPoint<double, Element::n_controls> x{a1.value(q), a2.value(q), a1.rate(v), a2.rate(v)};
+    for (std::size_t c = 0; c < controls.size(); ++c) x.e[c] = controls[c].value(u);
+    return x;
+  }
+};
+
+template <TwoPointElement Element>
+class TwoPointTerm final : public model::IntervalTerm {
+ public:
+  using Component = TwoPointComponent<Element>;
+
+  /// `gravity` (3): acceleration; acts on half the element's mass at each end, potential -m g.(a1 + a2)/2.
+  TwoPointTerm(std::vector<Component> components, const Eigen::Vector3d& gravity)
+      : components_(std::move(components)), gravity_(gravity) {
+    for (const Component& component : components_) scatters_.emplace_back(component.a1, component.a2);
+  }
+
+  const std::vector<Component>& components() const { return components_; }
+
+  void request(model::PatternRequest& pattern) const override {
+    for (const PointScatter& scatter : scatters_) scatter.request(pattern);
+  }
+  void bind(const math::BlockPattern& pattern) override {
+    for (PointScatter& scatter : scatters_) scatter.bind(pattern);
+  }
+
+  void add_forces(const model::IntervalPoint& at, model::IntervalForces& out) const override {
+    PointForces forces;
+    for (const Component& component : components_) {
+      point_forces(component.element, component.state(at.q, at.v, at.u), forces);
+      const Eigen::Vector3d weight = 0.5 * component.element.mass() * gravity_;
+      component.a1.add_transposed(forces.force.template head<3>() + weight, out.force);
+      component.a2.add_transposed(forces.force.template tail<3>() + weight, out.force);
+      component.a1.add_transposed(forces.momentum.template head<3>(), out.momentum);
+      component.a2.add_transposed(forces.momentum.template tail<3>(), out.momentum);
+    }
+  }
+
+  void add_tangent(const model::IntervalPoint& at, const model::TangentWeights& weights,
+                   math::BlockMatrix& K) const override {
+    Matrix6 tangent;
+    for (std::size_t k = 0; k < components_.size(); ++k) {
+      point_tangent(components_[k].element, components_[k].state(at.q, at.v, at.u), weights, tangent);
+      scatters_[k].add(tangent, K);
+    }
+  }
+
+  void add_control_force(const model::IntervalPoint& at, int control, Eigen::VectorXd& out) const override {
+    for (const Component& component : components_) {
+      for (int c = 0; c < Element::n_controls; ++c) {
+        const ControlInput& input = component.controls[static_cast<std::size_t>(c)];
+        if (input.control != control) continue;
+        const Vector6 slope =
+            input.factor * point_control_force(component.element, component.state(at.q, at.v, at.u), c);
+        component.a1.add_transposed(slope.head<3>(), out);
+        component.a2.add_transposed(slope.tail<3>(), out);
+      }
+    }
+  }
+
+  /// The part of the axial force that vanishes with the velocities dissipates, the rest is a drive.
+  model::IntervalWork work(const model::IntervalPoint& at) const override {
+    model::IntervalWork total;
+    for (const Component& component : components_) {
+      auto x = component.state(at.q, at.v, at.u);
+      const auto energy = as_energy(component.element);
+      const double travel = at.dt * Line(x).zd;
+      const double force = energy.force(x);
+      x.v1.setZero();
+      x.v2.setZero();
+      const double drive = energy.force(x);
+      total += {.dissipated = (drive - force) * travel, .external = drive * travel};
+    }
+    return total;
+  }
+
+  std::vector<std::string> parts() const override {
+    std::vector<std::string> names;
+    for (const Component& component : components_) names.push_back(std::string(Element::folder) + "/" + component.name);
+    return names;
+  }
+
+  void energies(const model::NodePoint& at, std::span<model::Energy> out) const override {
+    for (std::size_t k = 0; k < components_.size(); ++k) {
+      const auto x = components_[k].state(at.q, at.v, at.u);
+      const auto energy = as_energy(components_[k].element);
+      out[k] += {.kinetic = energy.kinetic(x),
+                 .elastic = energy.elastic(x),
+                 .electric = energy.electric(x),
+                 .gravity = -components_[k].element.mass() * gravity_.dot(x.midpoint())};
+    }
+  }
+
+  std::string inadmissible(const Eigen::VectorXd& q) const override {
+    for (const Component& component : components_) {
+      const std::string why = component.element.inadmissible((component.a1.value(q) - component.a2.value(q)).norm());
+      if (!why.empty()) return std::string(Element::noun) + " '" + component.name + "': " + why;
+    }
+    return {};
+  }
+
+ private:
+  std::vector<Component> components_;
+  std::vector<PointScatter> scatters_;
+  Eigen::Vector3d gravity_;
+};
+
+}  // namespace muldi::muscles
