@@ -1,0 +1,54 @@
+#pragma once
+/// Velocities, energies and momenta at a node in time, by the projected Legendre transform (numerics, 1.5 and C15).
+#include <memory>
+#include <span>
+
+#include "model/model.hpp"
+#include "variational/state.hpp"
+
+namespace muldi::variational {
+
+/// Values at one node; buffers are reused.
+struct NodeValues {
+  Eigen::VectorXd rate;      ///< minimal velocities w with T^T M T w = T^T p, on the loops B w = 0
+  Eigen::VectorXd v;         ///< T w
+  Eigen::VectorXd momentum;  ///< M v (n_q), consistent with the constraints
+  std::vector<model::Energy> parts;
+  model::Energy total;
+  double electric_after = 0.0;  ///< electric enthalpy under the controls of the next interval
+  Eigen::Vector3d linear_momentum = Eigen::Vector3d::Zero();
+  Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();
+};
+
+class NodeEvaluator {
+ public:
+  /// `linear`: solver kind, as StepOptions::linear.
+  NodeEvaluator(const model::Model& model, const std::string& linear);
+
+  /// Velocities, energies and momenta of `state`; `u_before` and `u_after`: controls of the intervals on both sides.
+  /// False if the mass matrix is singular on the free motions.
+  bool evaluate(const State& state, std::span<const double> u_before, std::span<const double> u_after, NodeValues& out);
+
+  /// Multipliers of the loop rows that make the last momentum consistent (n_c), an impulse.
+  const Eigen::VectorXd& loop_impulse() const { return lambda_; }
+
+  /// Electric enthalpy alone, for the work of control jumps.
+  double electric(const State& state, std::span<const double> u);
+
+  /// M(q) v (n_q).
+  void momentum_of(const Eigen::VectorXd& q, const Eigen::VectorXd& v, std::span<const double> u, Eigen::VectorXd& p);
+
+ private:
+  const model::Model& model_;
+  std::unique_ptr<model::ProjectedSolver> solver_;
+  std::unique_ptr<model::Frame> frame_;
+  math::BlockMatrix M_;
+  model::IntervalForces forces_;
+  Eigen::VectorXd r_;
+  Eigen::VectorXd zero_c_;
+  Eigen::VectorXd lambda_;
+  Eigen::VectorXd zero_q_;
+  std::vector<model::Energy> scratch_;
+};
+
+}  // namespace muldi::variational

@@ -1,0 +1,36 @@
+#pragma once
+/// The state of a run between two steps: everything that a bit-for-bit restart needs.
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace muldi::variational {
+
+/// Momentum form: configuration and unprojected momentum at the same node (numerics, 1.5).
+struct State {
+  long step = 0;  ///< nodes passed since t = 0
+  double t = 0.0;
+  Eigen::VectorXd x;            ///< coordinates of the manifold (n_x)
+  Eigen::VectorXd q;            ///< configuration (n_q), rebuilt from x
+  Eigen::VectorXd p;            ///< D2 L_d + f+ of the last interval (n_q); M v at t = 0
+  Eigen::VectorXd increment;    ///< last minimal increment (n_v), the predictor
+  Eigen::VectorXd multipliers;  ///< lambda of the last node (n_c)
+};
+
+/// How a solver ended; the names are those of the result file (scene format, section 4).
+enum class Status {
+  running,
+  completed,
+  interrupted,
+  no_convergence,
+  loss_of_equilibrium,
+  muscle_collapse,
+  breakdown,
+  step_too_large,
+  rank_change,
+  write_error,
+};
+
+std::string name_of(Status status);
+
+}  // namespace muldi::variational

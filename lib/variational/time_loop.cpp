@@ -1,0 +1,107 @@
+#include "variational/time_loop.hpp"
+
+#include <algorithm>
+
+namespace muldi::variational {
+
+TimeLoop::TimeLoop(const model::Model& model, LoopOptions options)
+    : model_(model),
+      options_(std::move(options)),
+      stepper_(model, options_.dt, options_.step),
+      nodes_(model, options_.step.linear),
+      u_before_(model.controls.size()),
+      u_(model.controls.size()) {}
+
+void TimeLoop::controls_of(const State& state) {
+  const double middle = 0.5 * options_.dt;
+  const double t = static_cast<double>(state.step) * options_.dt;
+  model_.evaluate_controls(t + middle, u_);
+  if (state.step == 0) {
+    u_before_ = u_;
+  } else {
+    model_.evaluate_controls(t - middle, u_before_);
+  }
+}
+
+LoopResult TimeLoop::run(State& state, Ledger& ledger, StepReport& last, const LoopCallbacks& callbacks) {
+  LoopResult result;
+  bool warned_rotation = false;
+  bool warned_loop = false;
+  while (state.step < options_.steps && result.status == Status::completed) {
+    if (callbacks.interrupted && callbacks.interrupted()) {
+      result.status = Status::interrupted;
+      result.sentence = "interrupted by the user";
+      break;
+    }
+    controls_of(state);
+    const bool recorded = state.step % options_.record_every == 0;
+    if (recorded && callbacks.checkpoint) callbacks.checkpoint(state, ledger, last);
+    if (recorded || state.step == 0) {
+      if (!nodes_.evaluate(state, u_before_, u_, values_)) {
+        result.status = Status::no_convergence;
+        result.sentence = "the mass matrix is singular on the free motions: a body without mass or inertia moves";
+        break;
+      }
+      if (state.step == 0) ledger.initial_total = values_.total.kinetic + values_.total.potential();
+    }
+    double jump = 0.0;
+    if (u_ != u_before_) jump = nodes_.electric(state, u_) - nodes_.electric(state, u_before_);
+    before_ = state;
+    const StepReport report = stepper_.advance(state, u_);
+    if (report.status != Status::running) {
+      result.status = report.status;
+      result.sentence = report.sentence;
+      break;
+    }
+    if (recorded) record(callbacks, before_, ledger, last, stepper_.constraint_force(), state.multipliers);
+    last = report;
+    ledger.dissipated += report.work.dissipated;
+    ledger.external += report.work.external;
+    ledger.source += jump;
+    ++result.statistics.steps;
+    result.statistics.iterations += report.iterations;
+    result.statistics.factorisations += report.factorisations;
+    result.statistics.largest_residual = std::max(result.statistics.largest_residual, report.residual);
+    result.statistics.largest_rotation = std::max(result.statistics.largest_rotation, report.rotation);
+    if (callbacks.warn && !warned_rotation && report.rotation > options_.step.warn_rotation) {
+      warned_rotation = true;
+      callbacks.warn(report, state.t);
+    }
+    if (callbacks.warn && !warned_loop && report.loop_regularity < options_.step.loop_warning) {
+      warned_loop = true;
+      callbacks.warn(report, state.t);
+    }
+  }
+  record_end(callbacks, state, ledger, last);
+  result.t = state.t;
+  return result;
+}
+
+void TimeLoop::record(const LoopCallbacks& callbacks, const State& state, const Ledger& ledger, const StepReport& last,
+                      const Eigen::VectorXd& force, const Eigen::VectorXd& multipliers) {
+  if (!callbacks.record) return;
+  callbacks.record({.step = state.step,
+                    .t = state.t,
+                    .state = state,
+                    .values = values_,
+                    .ledger = ledger,
+                    .constraint_force = force,
+                    .multipliers = multipliers,
+                    .u = u_before_,
+                    .report = last});
+}
+
+void TimeLoop::record_end(const LoopCallbacks& callbacks, const State& state, Ledger& ledger, const StepReport& last) {
+  // At the last node there is no following step. The reactions are those that make its momentum consistent with the
+  // constraints: p_N - (dt/2) G^T lambda_N = M v_N.
+  controls_of(state);
+  if (!nodes_.evaluate(state, u_before_, u_, values_)) return;
+  if (state.step == 0) ledger.initial_total = values_.total.kinetic + values_.total.potential();
+  if (callbacks.checkpoint) callbacks.checkpoint(state, ledger, last);
+  const double half = 0.5 * options_.dt;
+  end_force_ = (values_.momentum - state.p) / half;
+  end_multipliers_ = nodes_.loop_impulse() / half;
+  record(callbacks, state, ledger, last, end_force_, end_multipliers_);
+}
+
+}  // namespace muldi::variational

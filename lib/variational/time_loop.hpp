@@ -1,0 +1,89 @@
+#pragma once
+/// Runs a model from a state over a number of steps and hands every node to an observer, with the energy ledger.
+#include <functional>
+
+#include "variational/node_values.hpp"
+#include "variational/stepper.hpp"
+
+namespace muldi::variational {
+
+/// Sums over the run, part of the state of a restart.
+struct Ledger {
+  double dissipated = 0.0;
+  double external = 0.0;
+  double source = 0.0;  ///< work of control jumps: electric enthalpy after minus before, summed over the nodes passed
+  double initial_total = 0.0;  ///< energy at t = 0
+};
+
+/// Counts over the run.
+struct LoopStatistics {
+  long steps = 0;
+  long iterations = 0;
+  long factorisations = 0;
+  double largest_residual = 0.0;
+  double largest_rotation = 0.0;
+};
+
+/// A node that is complete: the reactions at it are known once the following step is solved.
+struct NodeRecord {
+  long step = 0;
+  double t = 0.0;
+  const State& state;
+  const NodeValues& values;
+  const Ledger& ledger;
+  const Eigen::VectorXd& constraint_force;  ///< -G^T lambda (n_q)
+  const Eigen::VectorXd& multipliers;       ///< (n_c)
+  std::span<const double> u;                ///< of the interval that ends here (of the first one at t = 0)
+  const StepReport& report;                 ///< of the step that ends here
+};
+
+struct LoopOptions {
+  double dt = 0.0;
+  long steps = 0;  ///< nodes 0 .. steps
+  long record_every = 1;
+  StepOptions step = {};
+};
+
+struct LoopCallbacks {
+  std::function<void(const NodeRecord&)> record;  ///< every `record_every`-th node, the last, and on failure
+  /// Before every step whose node is recorded, and at the end; may skip.
+  std::function<void(const State&, const Ledger&, const StepReport&)> checkpoint = {};
+  std::function<bool()> interrupted = {};
+  std::function<void(const StepReport&, double t)> warn = {};  ///< rotation or loop near a limit; called once each
+};
+
+struct LoopResult {
+  Status status = Status::completed;
+  std::string sentence;
+  double t = 0.0;
+  LoopStatistics statistics;
+};
+
+class TimeLoop {
+ public:
+  TimeLoop(const model::Model& model, LoopOptions options);
+
+  /// Goes on from `state` and `ledger`, with `last` the report of the step that ended there (default at t = 0), and
+  /// leaves them at the last node that was reached. A node is recorded after the step that follows it, so a run that
+  /// resumes from a checkpoint records the checkpoint's own node again.
+  LoopResult run(State& state, Ledger& ledger, StepReport& last, const LoopCallbacks& callbacks);
+
+ private:
+  void controls_of(const State& state);
+  void record(const LoopCallbacks& callbacks, const State& state, const Ledger& ledger, const StepReport& last,
+              const Eigen::VectorXd& force, const Eigen::VectorXd& multipliers);
+  void record_end(const LoopCallbacks& callbacks, const State& state, Ledger& ledger, const StepReport& last);
+
+  const model::Model& model_;
+  LoopOptions options_;
+  Stepper stepper_;
+  NodeEvaluator nodes_;
+  NodeValues values_;
+  State before_;
+  std::vector<double> u_before_;
+  std::vector<double> u_;
+  Eigen::VectorXd end_force_;
+  Eigen::VectorXd end_multipliers_;
+};
+
+}  // namespace muldi::variational
