@@ -1,0 +1,179 @@
+#include "statics/equilibrium.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace muldi::statics {
+namespace {
+
+constexpr double longest_increment = 0.5;  // dimensionless: rad, or sizes of the scene
+constexpr int max_halvings = 30;
+constexpr double line_search_goal = 0.9;  // |work of the residual along the increment| relative to the start
+constexpr double free_motion = 1e-11;     // smallest over largest eigenvalue of a motion without stiffness
+constexpr double round_off_residual = 1e-12;
+
+/// Columns that span the motions which the loop rows allow.
+Eigen::MatrixXd admissible_motions(const Eigen::MatrixXd& B, Eigen::Index n_v) {
+  if (B.rows() == 0) return Eigen::MatrixXd::Identity(n_v, n_v);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(B.transpose());
+  return Eigen::MatrixXd(qr.householderQ()).rightCols(n_v - B.rows());
+}
+
+}  // namespace
+
+EquilibriumSolver::EquilibriumSolver(const model::Model& model, EquilibriumOptions options)
+    : model_(model),
+      manifold_(*model.manifold),
+      options_(options),
+      frame_(manifold_.make_frame()),
+      K_(*model.pattern),
+      q_(Eigen::VectorXd::Zero(manifold_.n_q())),
+      zero_(q_),
+      bracket_(q_),
+      r_(Eigen::VectorXd::Zero(manifold_.n_v())),
+      g_(Eigen::VectorXd::Zero(manifold_.n_c())),
+      scale_(manifold_.rate_scale()),
+      A_(manifold_.n_v(), manifold_.n_v()),
+      B_(manifold_.n_c(), manifold_.n_v()),
+      dw_(r_),
+      dlambda_(g_) {
+  forces_.force = q_;
+  forces_.momentum = q_;
+}
+
+model::IntervalPoint EquilibriumSolver::point(const StaticState& state, std::span<const double> u) const {
+  const std::span<const double> x(state.x.data(), static_cast<std::size_t>(state.x.size()));
+  return {.q0 = q_, .q1 = q_, .q = q_, .v = zero_, .u = u, .x0 = x, .x1 = x};
+}
+
+void EquilibriumSolver::evaluate(const StaticState& state, std::span<const double> u) {
+  manifold_.configuration(state.x, q_);
+  manifold_.update(state.x, q_, *frame_);
+  model_.forces(point(state, u), forces_);
+  terms_ = forces_.force.lpNorm<Eigen::Infinity>();
+  bracket_ = forces_.force;
+  manifold_.add_constraint_forces(q_, -1.0, state.multipliers, bracket_);
+  manifold_.project(*frame_, bracket_, r_);
+  manifold_.constraints(q_, g_);
+}
+
+void EquilibriumSolver::linearise(const StaticState& state, std::span<const double> u) {
+  evaluate(state, u);
+  model_.tangent(point(state, u), model::TangentWeights::stiffness(), K_);
+  manifold_.project_tangent(*frame_, *frame_, K_, A_);
+  manifold_.add_curvature(*frame_, bracket_, state.multipliers, A_);
+  manifold_.project_constraints(*frame_, B_);
+}
+
+Eigen::VectorXd EquilibriumSolver::load_rate(std::span<const double> u, std::span<const double> du) {
+  const StaticState at{.x = Eigen::VectorXd::Zero(0), .multipliers = {}};
+  Eigen::VectorXd rate = Eigen::VectorXd::Zero(manifold_.n_q());
+  Eigen::VectorXd one(manifold_.n_q());
+  for (std::size_t c = 0; c < du.size(); ++c) {
+    if (du[c] == 0.0) continue;
+    one.setZero();
+    for (const auto& term : model_.terms) term->add_control_force(point(at, u), static_cast<int>(c), one);
+    rate += du[c] * one;
+  }
+  Eigen::VectorXd projected(manifold_.n_v());
+  manifold_.project(*frame_, rate, projected);
+  return projected;
+}
+
+Stability EquilibriumSolver::stability() const {
+  if (manifold_.n_v() == manifold_.n_c()) return Stability::stable;
+  const Eigen::MatrixXd scaled = scale_.asDiagonal() * A_ * scale_.asDiagonal();
+  const Eigen::MatrixXd N = admissible_motions(B_ * scale_.asDiagonal(), manifold_.n_v());
+  const Eigen::MatrixXd reduced = N.transpose() * (0.5 * (scaled + scaled.transpose())) * N;
+  const Eigen::VectorXd values =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(reduced, Eigen::EigenvaluesOnly).eigenvalues();
+  const double largest = std::max(std::abs(values[0]), std::abs(values[values.size() - 1]));
+  if (std::abs(values[0]) <= free_motion * largest || largest == 0.0) return Stability::free;
+  return values[0] > 0.0 ? Stability::stable : Stability::unstable;
+}
+
+void EquilibriumSolver::newton_increment() {
+  // In dimensionless increments; a shift makes the tangent positive where it is not, so that steps go downhill.
+  const Eigen::Index n_v = manifold_.n_v();
+  const Eigen::Index n_c = manifold_.n_c();
+  const Eigen::MatrixXd scaled = scale_.asDiagonal() * A_ * scale_.asDiagonal();
+  const Eigen::MatrixXd rows = B_ * scale_.asDiagonal();
+  const Eigen::MatrixXd N = admissible_motions(rows, n_v);
+  const Eigen::MatrixXd reduced = N.transpose() * scaled * N;
+  const Eigen::MatrixXd symmetric = 0.5 * (reduced + reduced.transpose());
+  const double size = symmetric.size() > 0 ? symmetric.cwiseAbs().maxCoeff() : 0.0;
+  double shift = 0.0;
+  while (symmetric.size() > 0) {
+    const Eigen::MatrixXd shifted = symmetric + shift * Eigen::MatrixXd::Identity(symmetric.rows(), symmetric.cols());
+    if (Eigen::LLT<Eigen::MatrixXd>(shifted).info() == Eigen::Success) break;
+    shift = shift == 0.0 ? 1e-6 * (size > 0.0 ? size : 1.0) : 4.0 * shift;
+    if (!std::isfinite(shift)) break;
+  }
+  Eigen::MatrixXd kkt = Eigen::MatrixXd::Zero(n_v + n_c, n_v + n_c);
+  kkt.topLeftCorner(n_v, n_v) = scaled + shift * Eigen::MatrixXd::Identity(n_v, n_v);
+  kkt.topRightCorner(n_v, n_c) = rows.transpose();
+  kkt.bottomLeftCorner(n_c, n_v) = rows;
+  Eigen::VectorXd rhs(n_v + n_c);
+  rhs << scale_.cwiseProduct(r_), -g_;
+  const Eigen::VectorXd solution = kkt.partialPivLu().solve(rhs);
+  dw_ = scale_.cwiseProduct(solution.head(n_v));
+  dlambda_ = solution.tail(n_c);
+}
+
+double EquilibriumSolver::line_search(const StaticState& start, StaticState& trial, std::span<const double> u,
+                                      std::string& inadmissible) {
+  const double begin = r_.dot(dw_);
+  double factor = 1.0;
+  for (int halving = 0; halving <= max_halvings; ++halving, factor *= 0.5) {
+    manifold_.retract(start.x, factor * dw_, trial.x);
+    trial.multipliers = start.multipliers + factor * dlambda_;
+    manifold_.configuration(trial.x, q_);
+    inadmissible = model_.inadmissible(q_);
+    if (!inadmissible.empty()) continue;
+    evaluate(trial, u);
+    // On loops the multipliers change with the step, so that the work of the residual is no measure of progress there.
+    if (manifold_.n_c() > 0 || std::abs(r_.dot(dw_)) <= line_search_goal * std::abs(begin)) return factor;
+    if (terms_ * round_off_residual >= r_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>()) return factor;
+  }
+  return inadmissible.empty() ? factor : 0.0;
+}
+
+EquilibriumReport EquilibriumSolver::solve(StaticState& state, std::span<const double> u) {
+  EquilibriumReport report;
+  StaticState at = state;
+  StaticState trial = state;
+  double previous = 0.0;
+  manifold_.configuration(at.x, q_);
+  report.inadmissible = model_.inadmissible(q_);
+  if (!report.inadmissible.empty()) return report;
+  if (manifold_.n_v() == 0) {
+    linearise(at, u);
+    report.converged = true;
+    return report;
+  }
+  for (report.iterations = 1; report.iterations <= options_.max_iterations; ++report.iterations) {
+    linearise(at, u);
+    newton_increment();
+    double size = dw_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>();
+    if (!std::isfinite(size)) return report;
+    if (size > longest_increment) dw_ *= longest_increment / size;
+    if (line_search(at, trial, u, report.inadmissible) == 0.0) return report;
+    std::swap(at, trial);
+    report.residual = terms_ > 0.0 ? r_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>() / terms_ : 0.0;
+    const bool stagnates = report.iterations > 3 && size > 0.5 * previous && report.residual < round_off_residual;
+    if (size <= options_.tolerance || stagnates) {
+      report.converged = true;
+      break;
+    }
+    previous = size;
+  }
+  if (!report.converged) return report;
+  linearise(at, u);
+  report.stability = stability();
+  state = at;
+  return report;
+}
+
+}  // namespace muldi::statics

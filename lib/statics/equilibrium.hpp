@@ -1,0 +1,87 @@
+#pragma once
+/// Static equilibrium on the constraint manifold: Newton with regularisation, line search and a stability check.
+///
+///     T(q)^T [ F(q, u) - G_c(q)^T lambda ] = 0,  g_c(q) = 0,  F = dL/dq + f at rest,
+/// with the tangent T^T (-F_q) T and the curvature of the manifold (numerics, 4.5).
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "model/model.hpp"
+
+namespace muldi::statics {
+
+struct EquilibriumOptions {
+  double tolerance = 1e-10;  ///< largest dimensionless Newton increment whose result is accepted
+  int max_iterations = 50;
+};
+
+/// A configuration at rest with the multipliers of the loops.
+struct StaticState {
+  Eigen::VectorXd x;            ///< (n_x)
+  Eigen::VectorXd multipliers;  ///< (n_c)
+};
+
+enum class Stability {
+  stable,    ///< the projected tangent is positive definite on the admissible motions
+  unstable,  ///< it has a negative direction
+  free,      ///< it has a direction without stiffness: the system can move without any force
+};
+
+struct EquilibriumReport {
+  bool converged = false;
+  Stability stability = Stability::stable;
+  int iterations = 0;
+  double residual = 0.0;     ///< relative
+  std::string inadmissible;  ///< why the terms could not be evaluated (collapsed muscle)
+};
+
+class EquilibriumSolver {
+ public:
+  EquilibriumSolver(const model::Model& model, EquilibriumOptions options);
+
+  /// Moves `state` to an equilibrium under the controls u; unchanged if it does not converge.
+  EquilibriumReport solve(StaticState& state, std::span<const double> u);
+
+  /// Evaluates residual, constraints and tangent at a state.
+  void linearise(const StaticState& state, std::span<const double> u);
+  const Eigen::VectorXd& residual() const { return r_; }          ///< T^T (F - G^T lambda) (n_v)
+  const Eigen::VectorXd& gaps() const { return g_; }              ///< g (n_c)
+  const Eigen::MatrixXd& tangent() const { return A_; }           ///< (n_v, n_v)
+  const Eigen::MatrixXd& loop_rows() const { return B_; }         ///< (n_c, n_v)
+  const Eigen::VectorXd& configuration() const { return q_; }     ///< (n_q)
+  const Eigen::VectorXd& force() const { return forces_.force; }  ///< F (n_q)
+  const Eigen::VectorXd& scale() const { return scale_; }         ///< natural size of increments (n_v)
+  /// T^T sum_c dF/du_c du_c (n_v) at the linearised state.
+  Eigen::VectorXd load_rate(std::span<const double> u, std::span<const double> du);
+  Stability stability() const;
+
+ private:
+  model::IntervalPoint point(const StaticState& state, std::span<const double> u) const;
+  void evaluate(const StaticState& state, std::span<const double> u);
+  void newton_increment();
+  double line_search(const StaticState& start, StaticState& trial, std::span<const double> u,
+                     std::string& inadmissible);
+
+  const model::Model& model_;
+  const model::Manifold& manifold_;
+  EquilibriumOptions options_;
+  std::unique_ptr<model::Frame> frame_;
+  math::BlockMatrix K_;
+  model::IntervalForces forces_;
+  Eigen::VectorXd q_;
+  Eigen::VectorXd zero_;
+  Eigen::VectorXd bracket_;
+  Eigen::VectorXd r_;
+  Eigen::VectorXd g_;
+  Eigen::VectorXd scale_;
+  Eigen::MatrixXd A_;
+  Eigen::MatrixXd B_;
+  Eigen::VectorXd dw_;
+  Eigen::VectorXd dlambda_;
+  double terms_ = 0.0;
+};
+
+}  // namespace muldi::statics

@@ -1,0 +1,71 @@
+#pragma once
+/// Load curves: equilibria along u(s) = u_0 + s du, by load stepping or by arc length past limit points.
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "statics/equilibrium.hpp"
+
+namespace muldi::statics {
+
+enum class Continuation { natural, arc_length };
+
+struct SweepOptions {
+  double from = 0.0;
+  double to = 1.0;
+  int steps = 10;
+  Continuation continuation = Continuation::natural;
+  EquilibriumOptions equilibrium = {};
+};
+
+/// One equilibrium of a curve.
+struct SweepPoint {
+  double load = 0.0;
+  const StaticState& state;
+  const Eigen::VectorXd& q;
+  const Eigen::VectorXd& force;  ///< F (n_q): minus the constraint forces
+  std::span<const double> u;
+  const EquilibriumReport& report;
+};
+
+struct SweepResult {
+  enum class End { completed, loss_of_equilibrium, no_convergence, free_motion, interrupted };
+  End end = End::completed;
+  std::string sentence;
+  double last_good = 0.0;  ///< largest load with a stable equilibrium (natural), bracketing the critical one
+  double first_bad = 0.0;  ///< with last_good: where the equilibrium is lost
+};
+
+struct SweepCallbacks {
+  std::function<void(const SweepPoint&)> record;
+  std::function<bool()> interrupted = {};
+};
+
+class Sweep {
+ public:
+  /// Controls along the curve: u = u_fixed + load * direction.
+  Sweep(const model::Model& model, std::vector<double> u_fixed, std::vector<double> direction, SweepOptions options);
+
+  /// Leaves `state` at the last recorded equilibrium.
+  SweepResult run(StaticState& state, const SweepCallbacks& callbacks);
+
+ private:
+  SweepResult natural(StaticState& state, const SweepCallbacks& callbacks);
+  SweepResult arc_length(StaticState& state, const SweepCallbacks& callbacks);
+  EquilibriumReport solve_at(double load, StaticState& state);
+  bool first_equilibrium(StaticState& state, EquilibriumReport& report, SweepResult& result);
+  void controls_at(double load);
+  void record(const SweepCallbacks& callbacks, double load, const StaticState& state, const EquilibriumReport& report);
+  bool corrector(StaticState& at, double& load, const Eigen::VectorXd& tangent, double arc, EquilibriumReport& report);
+  Eigen::VectorXd tangent_at(const StaticState& state, double load, const Eigen::VectorXd& previous);
+  Eigen::MatrixXd bordered(double load, const Eigen::VectorXd& tangent);
+
+  const model::Model& model_;
+  std::vector<double> u_fixed_;
+  std::vector<double> direction_;
+  SweepOptions options_;
+  EquilibriumSolver solver_;
+  std::vector<double> u_;
+};
+
+}  // namespace muldi::statics
