@@ -1,0 +1,311 @@
+#include "results/hdf5_recorder.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cerrno>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+namespace muldi::results {
+namespace {
+
+constexpr std::size_t compressed_row_bytes = 4096;  // a field; rows of numbers are written faster than compressed
+constexpr std::size_t max_chunk_bytes = std::size_t{256} << 10;
+constexpr std::uint64_t room_for_index = std::uint64_t{1} << 20;
+
+hdf5::RowStorage storage_of(std::size_t width, std::size_t block_rows) {
+  const std::size_t row_bytes = width * sizeof(double);
+  const std::size_t rows = std::bit_floor(std::max<std::size_t>(max_chunk_bytes / row_bytes, 1));
+  return {std::min(rows, block_rows), row_bytes >= compressed_row_bytes};
+}
+
+/// Makes sure that the path can be written; a file that is there is an error unless it may be overwritten.
+void claim(const Output& output) {
+  const bool overwrite = output.mode == Output::Mode::overwrite;
+  const int descriptor = ::open(output.path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | (overwrite ? 0 : O_EXCL), 0666);
+  const int error = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  if (descriptor < 0 && error == EEXIST) {
+    throw base::InputError("'" + output.path + "' exists (--force overwrites it, --output names another file)");
+  }
+  if (descriptor < 0) throw base::EnvironmentError("cannot write '" + output.path + "': " + std::strerror(error));
+  if (!std::filesystem::is_regular_file(output.path)) {
+    throw base::EnvironmentError("cannot write '" + output.path + "': not a regular file");
+  }
+}
+
+void describe(hdf5::DataSet& set, const std::string& unit, const std::string& doc) {
+  if (!unit.empty()) set.add_attribute("unit", unit);
+  if (!doc.empty()) set.add_attribute("doc", doc);
+}
+
+void set_status(hdf5::File& file, const Ending& ending) {
+  file.set_attribute({{}, "status", ending.status});
+  file.set_attribute({{}, "status_time", ending.time});
+  file.set_attribute({{}, "status_where", ending.where});
+}
+
+const Ending running{.status = "running", .where = {}, .time = std::numeric_limits<double>::quiet_NaN()};
+
+/// What is wrong with a data set that a recording wants to go on with; empty if it fits.
+std::string mismatch(const hdf5::File& file, const hdf5::DataSet& set, const ChannelSpec& spec) {
+  const auto unit = file.attribute(set.path(), "unit");
+  if (!set.grows() || set.storage().chunk_rows == 0) return "is not made of rows";
+  if (!std::ranges::equal(std::span(set.shape()).subspan(1), spec.shape)) return "has rows of another shape";
+  if (set.type() != spec.type) return "has values of another type";
+  if (unit.value_or(std::string()) != AttributeValue(spec.unit)) return "has another unit";
+  return {};
+}
+
+bool same_bits(const hdf5::DataSet& set, const FixedArray& array) {
+  if (set.shape() != array.spec.shape || set.type() != array.type) return false;
+  std::vector<std::int64_t> bits(count(set.shape()));
+  if (bits.empty()) return true;
+  set.read_rows(0, set.shape().empty() ? 1 : set.shape()[0], bits.data());
+  const void* values = array.reals.empty() ? static_cast<const void*>(array.integers.data()) : array.reals.data();
+  return std::memcmp(bits.data(), values, bits.size() * sizeof(double)) == 0;
+}
+
+}  // namespace
+
+Hdf5Recorder::Hdf5Recorder(Output output) : Recorder(output.flush_interval), output_(std::move(output)) {
+  if (output_.mode == Output::Mode::resume) open_to_resume();
+}
+
+Hdf5Recorder::~Hdf5Recorder() {
+  if (!started()) return;
+  try {
+    close({.status = "interrupted", .where = "the recording was not closed", .time = running.time});
+  } catch (const std::exception&) {
+    // The status says what could be saved; a destructor has nobody to tell.
+  }
+}
+
+void Hdf5Recorder::open_to_resume() {
+  {
+    const hdf5::File reader = hdf5::File::open(output_.path, hdf5::Access::read);
+    const auto store = CheckpointStore::open(reader);
+    if (!store) throw base::InputError("'" + output_.path + "' cannot be resumed: it has no checkpoint");
+    StoredCheckpoint stored = store->read();
+    resume_point_ = std::move(stored.checkpoint);
+    resume_rows_ = std::move(stored.rows);
+  }
+  live_ = LiveFile(output_.path);
+  live_.open_to_readers(0);
+  file_ = hdf5::File::open(output_.path, hdf5::Access::write);
+  live_.open_to_readers(0);
+}
+
+std::size_t Hdf5Recorder::block_rows(const SeriesSpec& series, std::size_t proposed) const {
+  if (output_.mode != Output::Mode::resume || !file_.contains(series.axis)) return proposed;
+  const std::size_t rows = file_.data_set(series.axis).storage().chunk_rows;
+  return std::has_single_bit(rows) ? rows : proposed;
+}
+
+void Hdf5Recorder::do_start() {
+  room_ = room_for_index;
+  for (const Block& block : blocks()) room_ += 2 * sizeof(double) * block.values.size();
+  if (output_.mode == Output::Mode::resume) {
+    resume();
+  } else {
+    create();
+  }
+}
+
+void Hdf5Recorder::create() {
+  claim(output_);
+  live_ = LiveFile(output_.path);
+  try {
+    file_ = hdf5::File::create(output_.path);
+    create_content();
+    file_.flush();
+    file_.start_swmr();
+    live_.open_to_readers(room_);
+  } catch (...) {
+    drop();
+    std::error_code ignored;
+    std::filesystem::remove(output_.path, ignored);
+    throw;
+  }
+}
+
+void Hdf5Recorder::create_content() {
+  set_status(file_, running);
+  for (const FixedArray& array : layout().fixed) {
+    hdf5::DataSet set = file_.create_fixed(array);
+    describe(set, array.spec.unit, array.spec.doc);
+  }
+  for (const Column& column : columns()) {
+    const DeclaredChannel& channel = layout().channels[column.channel];
+    data_sets_.push_back(file_.create_rows(channel.spec, storage_of(column.width, blocks()[column.block].capacity)));
+    describe(data_sets_.back(), channel.spec.unit, channel.spec.doc);
+    if (channel.axis) data_sets_.back().add_attribute("axis", std::int64_t{1});
+  }
+  for (const Attribute& attribute : layout().attributes) file_.set_attribute(attribute);
+  std::vector<std::string> axes;
+  for (const SeriesSpec& series : layout().series) axes.push_back(series.axis);
+  CheckpointStore::create(file_, layout().checkpoint, axes);
+  checkpoints_ = *CheckpointStore::open(file_);
+  checkpoints_.order_as(layout().checkpoint, output_.path);
+}
+
+void Hdf5Recorder::resume() {
+  check_layout();
+  checkpoints_ = *CheckpointStore::open(file_);
+  checkpoints_.order_as(layout().checkpoint, output_.path);
+  for (const Column& column : columns()) {
+    data_sets_.push_back(file_.data_set(layout().channels[column.channel].spec.path));
+  }
+  try {
+    cut();
+    set_status(file_, running);
+    file_.flush();
+    file_.start_swmr();
+    live_.open_to_readers(room_);
+  } catch (const base::EnvironmentError& error) {
+    rescue(error.what());
+    throw;
+  }
+}
+
+void Hdf5Recorder::check_layout() const {
+  std::vector<base::Diagnostic> differences;
+  const auto report = [&](const std::string& path, const std::string& what) {
+    differences.push_back({.place = {.file = output_.path}, .path = path, .message = what});
+  };
+  std::vector<std::string> expected;
+  for (const DeclaredChannel& channel : layout().channels) {
+    expected.push_back(channel.spec.path);
+    if (!file_.contains(channel.spec.path)) {
+      report(channel.spec.path, "cannot be resumed: the file lacks it");
+    } else if (const auto what = mismatch(file_, file_.data_set(channel.spec.path), channel.spec); !what.empty()) {
+      report(channel.spec.path, "cannot be resumed: it " + what);
+    }
+  }
+  for (const FixedArray& array : layout().fixed) {
+    const std::string& path = array.spec.path;
+    if (!file_.contains(path) || !same_bits(file_.data_set(path), array))
+      report(path, "cannot be resumed: the file has other values");
+  }
+  for (const std::string& path : file_.data_sets()) {
+    if (file_.data_set(path).grows() && std::ranges::find(expected, path) == expected.end()) {
+      report(path, "cannot be resumed: the scene does not record it");
+    }
+  }
+  if (!differences.empty()) throw base::InputError(std::move(differences));
+}
+
+void Hdf5Recorder::cut() {
+  for (const Column& column : columns()) {
+    hdf5::DataSet& set = data_sets_[column.channel];
+    const auto rows = static_cast<std::size_t>(resume_rows_[column.block]);
+    if (set.shape()[0] < rows) {
+      throw base::InputError("'" + output_.path + "' cannot be resumed: /" + set.path() + " is too short");
+    }
+    set.resize(rows);
+  }
+  for (std::size_t s = 0; s < blocks().size(); ++s) go_on_at(s, static_cast<std::size_t>(resume_rows_[s]));
+  for (const Column& column : columns()) {
+    const Block& block = blocks()[column.block];
+    data_sets_[column.channel].read_rows(block.first, block.next - block.first, column.begin);
+  }
+}
+
+void Hdf5Recorder::write_rows(const Column& column) {
+  const Block& block = blocks()[column.block];
+  if (block.next == block.written) return;
+  hdf5::DataSet& set = data_sets_[column.channel];
+  set.resize(block.next);
+  if (set.storage().compressed) {
+    set.write_rows(block.written, block.next - block.written,
+                   column.begin + (block.written - block.first) * column.width);
+    return;
+  }
+  const std::size_t rows = set.storage().chunk_rows;
+  for (std::size_t row = (block.written - block.first) / rows * rows; row < block.next - block.first; row += rows) {
+    set.write_chunk(block.first + row, column.begin + row * column.width, rows * column.width * sizeof(double));
+  }
+}
+
+void Hdf5Recorder::do_flush(const Checkpoint* checkpoint, std::span<const std::int64_t> checkpoint_rows) {
+  const auto write_and_show = [&](bool axes) {
+    for (const Column& column : columns()) {
+      if (layout().channels[column.channel].axis == axes) write_rows(column);
+    }
+    file_.flush();
+    live_.open_to_readers(room_);
+  };
+  try {
+    write_and_show(false);
+    write_and_show(true);
+    if (checkpoint != nullptr) checkpoints_.write(*checkpoint, checkpoint_rows);
+  } catch (const base::EnvironmentError& error) {
+    rescue(error.what());
+    throw;
+  }
+}
+
+void Hdf5Recorder::do_close(const Ending& ending, const Late& late) {
+  try {
+    data_sets_.clear();
+    checkpoints_ = {};
+    file_.close();
+    end(ending, late);
+  } catch (const base::EnvironmentError& error) {
+    rescue(error.what());
+    throw;
+  }
+}
+
+void Hdf5Recorder::end(const Ending& ending, const Late& late) {
+  file_ = hdf5::File::open(output_.path, hdf5::Access::write);
+  live_.open_to_readers(0);
+  set_status(file_, ending);
+  for (const FixedArray& array : late.fixed) {
+    file_.remove(array.spec.path);
+    hdf5::DataSet set = file_.create_fixed(array);
+    describe(set, array.spec.unit, array.spec.doc);
+  }
+  for (const Attribute& attribute : late.attributes) file_.set_attribute(attribute);
+  file_.close();
+  live_ = {};
+}
+
+/// Leaves the file as the last flush left it.
+void Hdf5Recorder::drop() {
+  file_.abandon();
+  data_sets_.clear();
+  checkpoints_ = {};
+  try {
+    file_.close();
+  } catch (const base::EnvironmentError&) {
+    // What could not be written is lost: that is why we are here.
+  }
+}
+
+/// After a write error: the file goes back to the last flush, its series get one length, its status says why it ends.
+void Hdf5Recorder::rescue(const std::string& sentence) {
+  drop();
+  try {
+    live_.open_to_readers(0);
+    hdf5::File file = hdf5::File::open(output_.path, hdf5::Access::write);
+    live_.open_to_readers(0);
+    file_ = std::move(file);
+    std::vector<std::size_t> rows;
+    for (const SeriesSpec& series : layout().series) rows.push_back(file_.data_set(series.axis).shape()[0]);
+    for (const DeclaredChannel& channel : layout().channels) {
+      hdf5::DataSet set = file_.data_set(channel.spec.path);
+      if (set.shape()[0] > rows[channel.series]) set.resize(rows[channel.series]);
+    }
+    set_status(file_, {.status = "write_error", .where = sentence, .time = running.time});
+    file_.close();
+  } catch (const base::EnvironmentError&) {
+    drop();  // not even this could be written: the file says `running`
+  }
+  live_ = {};
+}
+
+}  // namespace muldi::results

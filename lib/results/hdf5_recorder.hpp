@@ -1,0 +1,66 @@
+#pragma once
+/// Records into an HDF5 file that can be read at any moment.
+///
+/// While the run goes on the file is in SWMR mode: other programs open it with swmr=True (h5py) and see new rows after
+/// `dataset.id.refresh()`; a plain open works too and shows the state of that moment. `status` is `running` from the
+/// first byte; the true status is put down by `close()`, when the file has left SWMR mode. After a killed process the
+/// file opens as it is and still says `running`: nothing need be done to read it, `--resume` goes on from its
+/// checkpoint. Only if the kill hit the microseconds between the library's write of its mark and our removal
+/// of it (live_file.hpp) must a reader say swmr=True; `muldi-sim info` and `--resume` manage anyway.
+///
+/// The axis of a series is written last: rows up to its length are complete whatever happens. After a write error the
+/// file holds all rows of the last flush that succeeded, and the status `write_error` where that can still be written.
+#include "results/checkpoint_store.hpp"
+#include "results/hdf5_file.hpp"
+#include "results/live_file.hpp"
+#include "results/recorder.hpp"
+
+namespace muldi::results {
+
+/// What to do about the output file.
+struct Output {
+  enum class Mode { create, overwrite, resume };
+  std::string path;
+  Mode mode = Mode::create;  ///< create: an existing file is an InputError
+  std::chrono::milliseconds flush_interval{500};
+};
+
+/// Recorder into an HDF5 file.
+class Hdf5Recorder final : public Recorder {
+ public:
+  /// Opens the file to resume, if it is to be; a new one is made by `start()`.
+  /// Throws InputError if the file to resume is missing, damaged, in use, or has no checkpoint.
+  explicit Hdf5Recorder(Output output);
+  /// A recording that was not closed (an exception passes) ends as `interrupted`.
+  ~Hdf5Recorder() override;
+
+  std::optional<Checkpoint> resume_point() const override { return resume_point_; }
+
+ private:
+  std::size_t block_rows(const SeriesSpec& series, std::size_t proposed) const override;
+  void do_start() override;
+  void do_flush(const Checkpoint* checkpoint, std::span<const std::int64_t> checkpoint_rows) override;
+  void do_close(const Ending& ending, const Late& late) override;
+
+  void open_to_resume();
+  void create();
+  void create_content();
+  void resume();
+  void check_layout() const;
+  void cut();
+  void write_rows(const Column& column);
+  void end(const Ending& ending, const Late& late);
+  void drop();
+  void rescue(const std::string& sentence);
+
+  Output output_;
+  LiveFile live_;
+  hdf5::File file_;
+  std::vector<hdf5::DataSet> data_sets_;  ///< in the order of the columns
+  CheckpointStore checkpoints_;
+  std::optional<Checkpoint> resume_point_;
+  std::vector<std::int64_t> resume_rows_;  ///< by series
+  std::uint64_t room_ = 0;                 ///< bytes that a flush may need beyond the end of the file
+};
+
+}  // namespace muldi::results
