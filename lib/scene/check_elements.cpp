@@ -1,0 +1,140 @@
+// Muscles, springs, loads, the initial state and the tasks.
+#include <cmath>
+
+#include "base/text.hpp"
+#include "scene/scene_check.hpp"
+
+namespace muldi::scene {
+
+void SceneCheck::check_muscle_ends(const Entry<Muscle>& entry) {
+  const std::string_view name = entry.name;
+  const Muscle& muscle = entry.value;
+  const bool attached = muscle.ends == MuscleEnds::attached;
+  const auto need = [&](bool given, bool wanted, std::string_view key) {
+    if (given == wanted || failed({"muscles", name, key})) return;
+    if (given) {
+      error({"muscles", name, key},
+            attached ? "belongs to a muscle with 'ends: free'" : "a muscle with 'ends: free' has none");
+    } else {
+      error({"muscles", name},
+            "missing key '" + std::string(key) + "'" + (attached ? "" : " of a muscle with 'ends: free'"));
+    }
+  };
+  need(muscle.from.has_value(), attached, "from");
+  need(muscle.to.has_value(), attached, "to");
+  need(muscle.axis.has_value(), !attached, "axis");
+  need(muscle.length.has_value(), !attached, "length");
+  if (muscle.axis) check_direction({"muscles", name, "axis"}, *muscle.axis);
+  if (muscle.from && muscle.to) check_two_ends("muscles", name, *muscle.from, *muscle.to);
+}
+
+void SceneCheck::check_muscle_control(const Entry<Muscle>& entry) {
+  const std::string_view name = entry.name;
+  const Muscle& muscle = entry.value;
+  const Entry<Material>* material = scene_.materials.find(muscle.material.name);
+  if (material == nullptr || failed({"materials", material->name}) || failed({"muscles", name, "lumped"})) return;
+  const bool dielectric = lumped_material(muscle, material->value).electric.has_value();
+  if (muscle.control && !dielectric) {
+    context_.add(error_at(muscle.control->origin, "material '" + material->name +
+                                                      "' has no electric law: a control cannot act on this muscle"));
+  }
+  if (!muscle.control && dielectric && !failed({"muscles", name, "control"})) {
+    error({"muscles", name}, "missing key 'control': material '" + material->name + "' is a dielectric");
+  }
+  if (!muscle.control) return;
+  using enum ControlQuantity;
+  check_quantity(*muscle.control, {field, layer_voltage, total_voltage});
+  const Entry<Control>* control = scene_.controls.find(muscle.control->name);
+  if (control != nullptr && control->value.quantity == layer_voltage && !muscle.layer_thickness &&
+      !failed({"controls", control->name}) && !failed({"muscles", name, "layer_thickness"})) {
+    error({"muscles", name}, "missing key 'layer_thickness': control '" + control->name + "' is a layer_voltage");
+  }
+}
+
+void SceneCheck::check_muscle(const Entry<Muscle>& entry) {
+  if (failed({"muscles", entry.name, "model"})) return;
+  check_muscle_ends(entry);
+  const muscles::LumpedModel& options = entry.value.lumped;
+  if (options.young && options.shear_modulus) {
+    error({"muscles", entry.name, "lumped", "mu"}, "give either young or mu, not both");
+  }
+  check_muscle_control(entry);
+}
+
+void SceneCheck::muscles() {
+  for (const Entry<Muscle>& muscle : scene_.muscles) check_muscle(muscle);
+}
+
+void SceneCheck::springs() {
+  for (const Entry<Spring>& spring : scene_.springs) {
+    check_two_ends("springs", spring.name, spring.value.from, spring.value.to);
+  }
+}
+
+void SceneCheck::check_load(const Entry<Load>& entry) {
+  const std::string_view name = entry.name;
+  const Load& load = entry.value;
+  if (load.body.name == ground) context_.add(error_at(load.body.origin, "a load on the ground moves nothing"));
+  if (failed({"loads", name})) return;
+  if (load.force.has_value() == load.torque.has_value()) {
+    error({"loads", name}, load.force ? "give either force or torque, not both" : "missing key 'force' or 'torque'");
+    return;
+  }
+  check_direction({"loads", name, load.force ? "force" : "torque"}, load.force ? *load.force : *load.torque);
+  if (load.force && !load.at) error({"loads", name}, "missing key 'at': where the force acts");
+  if (load.torque && load.at) error({"loads", name, "at"}, "a torque turns the whole body: leave out 'at'");
+  if (load.control.has_value() == load.magnitude.has_value()) {
+    error({"loads", name},
+          load.control ? "give either control or magnitude, not both" : "missing key 'control' or 'magnitude'");
+  } else if (load.control) {
+    check_quantity(*load.control, {load.force ? ControlQuantity::force : ControlQuantity::torque});
+  }
+}
+
+void SceneCheck::loads() {
+  for (const Entry<Load>& load : scene_.loads) check_load(load);
+}
+
+void SceneCheck::initial() {
+  for (const Entry<JointMomentum>& momentum : scene_.initial.momentum) {
+    const Entry<JointState>* state = scene_.initial.joints.find(momentum.name);
+    if (state == nullptr || state->value.velocity.empty()) continue;
+    error({"initial", "momentum", momentum.name},
+          "joint '" + momentum.name + "' has an initial velocity already; give one");
+  }
+}
+
+void SceneCheck::tasks() {
+  if (scene_.statics && !failed({"statics"})) {
+    const Statics& statics = *scene_.statics;
+    if (statics.control && !statics.to) error({"statics"}, "missing key 'to': the last value of the control");
+    if (!statics.control && statics.to) error({"statics", "to"}, "needs a control");
+    if (!statics.control && statics.from != 0.0) error({"statics", "from"}, "needs a control");
+    if (!statics.control && statics.continuation == Continuation::arc_length) {
+      error({"statics", "continuation"}, "arc_length needs a control");
+    }
+  }
+  for (const RecordedPoint& recorded : scene_.record.points) {
+    if (recorded.body.name != ground) continue;
+    context_.add(error_at(recorded.body.origin, "the ground does not move: nothing to record"));
+  }
+  if (!scene_.dynamics || failed({"dynamics"})) return;
+  const Dynamics& dynamics = *scene_.dynamics;
+  const double steps = dynamics.duration / dynamics.step;
+  const double most_steps = 2e9;
+  if (steps > most_steps) {
+    error({"dynamics", "step"}, "gives " + base::number_text(steps, 3) + " steps, at most 2e9 are run");
+    return;
+  }
+  // Both numbers are rounded once where they are written, so their quotient is off by a few units in the last place.
+  if (std::abs(steps - std::round(steps)) <= 1e-9 * steps && steps > 0.5) return;
+  const std::string unit = " " + scene_.units.time();
+  const double below = std::floor(steps) * dynamics.step;
+  const double above = std::ceil(steps) * dynamics.step;
+  error({"dynamics", "duration"},
+        "is no multiple of the step " + base::number_text(dynamics.step, 12) + unit + ": take " +
+            (below > 0.0 ? base::number_text(below, 12) + unit + " or " : std::string()) +
+            base::number_text(above, 12) + unit + ", got " + base::number_text(dynamics.duration, 12) + unit);
+}
+
+}  // namespace muldi::scene

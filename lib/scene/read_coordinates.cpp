@@ -1,0 +1,133 @@
+// Values that belong to joint coordinates: their number and dimensions follow the joint's type.
+#include <algorithm>
+
+#include "scene/read_values.hpp"
+
+namespace muldi::scene {
+namespace {
+
+/// The coordinates that a field applies to: forces to slides, torques to angles, others to all.
+std::vector<Coordinate> coordinates_of(const CoordinateField& field) {
+  std::vector<Coordinate> kinds;
+  for (const Coordinate kind : field.coordinates) {
+    const base::Dimension unit = kind == Coordinate::slide ? field.slide : field.angle;
+    if (unit != base::dimension::none) kinds.push_back(kind);
+  }
+  return kinds;
+}
+
+base::Field one_of(const CoordinateField& field, Coordinate kind) {
+  return {.key = field.key,
+          .doc = field.doc,
+          .unit = kind == Coordinate::slide ? field.slide : field.angle,
+          .range = field.range};
+}
+
+std::string listed(const std::vector<Coordinate>& kinds) {
+  std::string text;
+  for (const Coordinate kind : kinds) {
+    text += text.empty() ? "[" : ", ";
+    text += kind == Coordinate::slide ? "slide" : "angle";
+  }
+  return text + "]";
+}
+
+bool read_one(ReadContext& context, const Node& node, const CoordinateField& field, Coordinate kind, double& value) {
+  return read_value(context, node, one_of(field, kind), value);
+}
+
+bool read_one(ReadContext& context, const Node& node, const CoordinateField& field, Coordinate kind, Drive& value) {
+  if (node.is_null()) return true;  // no drive of this coordinate
+  return read_value(context, node, one_of(field, kind), value);
+}
+
+bool read_one(ReadContext& context, const Node& node, const CoordinateField&, Coordinate kind,
+              std::optional<Stops>& value) {
+  if (node.is_null()) return true;  // no stops of this coordinate
+  if (!node.is_map()) {
+    context.error(node.mark, "needs {range: [low, high], stiffness, damping}, got " + shown(node));
+    return false;
+  }
+  const std::size_t n_errors = context.diagnostics().size();
+  FieldReader reader(context, node);
+  describe_stops(kind, value.emplace(), reader);
+  reader.finish();
+  if (context.diagnostics().size() != n_errors) return false;
+  if (value->range[0] < value->range[1]) return true;
+  const ReadContext::Scope scope(context, "range");
+  context.error(node.find("range")->mark, "needs [low, high] with low < high");
+  return false;
+}
+
+template <class T>
+void read_all(ReadContext& context, const Node& node, const CoordinateField& field, std::vector<T>& values) {
+  const std::vector<Coordinate> kinds = coordinates_of(field);
+  if (kinds.empty()) {
+    const bool slides = field.slide != base::dimension::none;
+    const bool angles = field.angle != base::dimension::none;
+    const char* what = slides && angles ? "coordinate" : slides ? "slide" : "angle";
+    context.error(node.mark, std::string("this type of joint has no ") + what);
+    return;
+  }
+  values.assign(kinds.size(), T{});
+  if (node.is_sequence()) {
+    if (node.items.size() != kinds.size()) {
+      context.error(node.mark, "needs " + listed(kinds) + ", got " + shown(node));
+      return;
+    }
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+      const ReadContext::Scope scope(context, i);
+      read_one(context, node.items[i], field, kinds[i], values[i]);
+    }
+    return;
+  }
+  const bool alike = (field.shared || kinds.size() == 1) &&
+                     std::all_of(kinds.begin(), kinds.end(), [&](Coordinate kind) { return kind == kinds[0]; });
+  if (!alike) {
+    context.error(node.mark, "needs " + listed(kinds) + ", got " + shown(node));
+    return;
+  }
+  if (read_one(context, node, field, kinds[0], values[0])) values.assign(kinds.size(), values[0]);
+}
+
+/// The kinds of the coordinates of a joint; an error if there is none of this name. False: read no values of it.
+template <class T>
+bool find_coordinates(ReadContext& context, Entry<T>& entry) {
+  const Named<Joint>& joints = context.scene().joints;
+  const Entry<Joint>* joint = joints.find(entry.name);
+  if (joint == nullptr) {
+    context.add(error_at(entry.origin,
+                         "no joint " + base::in_quotes(entry.name) + base::did_you_mean(entry.name, joints.names())));
+    return false;
+  }
+  const auto kinds = joint->value.coordinates();
+  entry.value.coordinates.assign(kinds.begin(), kinds.end());
+  return !context.failed(joint->origin.path + ".type");
+}
+
+}  // namespace
+
+void read_coordinates(ReadContext& context, const Node& node, const CoordinateField& field,
+                      std::vector<double>& values) {
+  read_all(context, node, field, values);
+}
+
+void read_coordinates(ReadContext& context, const Node& node, const CoordinateField& field,
+                      std::vector<Drive>& values) {
+  read_all(context, node, field, values);
+}
+
+void read_coordinates(ReadContext& context, const Node& node, const CoordinateField& field,
+                      std::vector<std::optional<Stops>>& values) {
+  read_all(context, node, field, values);
+}
+
+bool prepare(ReadContext& context, Entry<JointState>& state) { return find_coordinates(context, state); }
+bool prepare(ReadContext& context, Entry<JointMomentum>& momentum) { return find_coordinates(context, momentum); }
+
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, JointMomentum& value) {
+  read_all(context, node, momentum_field(field.doc, value.coordinates), value.values);
+  return true;
+}
+
+}  // namespace muldi::scene

@@ -1,0 +1,152 @@
+#pragma once
+/// What is computed and recorded, and how.
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/describe.hpp"
+#include "scene/bodies.hpp"
+#include "scene/entries.hpp"
+
+namespace muldi::scene {
+
+enum class Continuation { natural, arc_length };
+
+inline std::span<const base::Word<Continuation>> words(Continuation) {
+  static constexpr base::Word<Continuation> all[] = {
+      {.word = "natural",
+       .value = Continuation::natural,
+       .doc = "steps of the control; stops where equilibrium is lost"},
+      {.word = "arc_length", .value = Continuation::arc_length, .doc = "steps along the path, past limit points"},
+  };
+  return all;
+}
+
+/// Equilibria along a control from one value to another, or under the controls at t = 0 reached in steps.
+struct Statics {
+  std::optional<ControlName> control = {};  ///< none: all controls to their values at t = 0
+  double from = 0.0;                        ///< these two: in the unit of the control
+  std::optional<double> to = {};            ///< given with a control
+  int steps = 1;
+  Continuation continuation = Continuation::natural;
+  base::Dimension unit = {};  ///< of `from` and `to`, from the control of this name
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit& visit) {
+    using namespace base;
+    constexpr auto optional = Need::optional;
+    visit(
+        Field{.key = "control", .doc = "control that is varied; without it all controls as at t = 0", .need = optional},
+        self.control);
+    visit(Field{.key = "from", .doc = "first value of the control", .unit = self.unit, .need = optional}, self.from);
+    visit(Field{.key = "to", .doc = "last value of the control", .unit = self.unit, .need = optional}, self.to);
+    visit(Field{.key = "steps", .doc = "number of load steps", .range = {.min = 1.0, .max = 1e6}}, self.steps);
+    visit(Field{.key = "continuation", .doc = "how the path is followed", .need = optional}, self.continuation);
+  }
+  friend bool operator==(const Statics&, const Statics&) = default;
+};
+
+enum class Integrator { midpoint, explicit_scheme };
+
+inline std::span<const base::Word<Integrator>> words(Integrator) {
+  static constexpr base::Word<Integrator> all[] = {
+      {.word = "midpoint", .value = Integrator::midpoint, .doc = "implicit variational integrator of order 2"},
+      {.word = "explicit",
+       .value = Integrator::explicit_scheme,
+       .doc = "the explicit integrator of solids",
+       .later = true},
+  };
+  return all;
+}
+
+/// Motion from t = 0.
+struct Dynamics {
+  double duration = 0.0;
+  double step = 0.0;
+  Integrator integrator = Integrator::midpoint;
+
+  /// Number of steps; the reader has made sure that the duration is a multiple of the step.
+  long n_steps() const;
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit& visit) {
+    using namespace base;
+    visit(Field{.key = "duration",
+                .doc = "simulated time, a multiple of the step",
+                .unit = dimension::time,
+                .range = positive},
+          self.duration);
+    visit(Field{.key = "step", .doc = "time step", .unit = dimension::time, .range = positive}, self.step);
+    visit(Field{.key = "integrator", .doc = "time integrator", .need = Need::optional}, self.integrator);
+  }
+  friend bool operator==(const Dynamics&, const Dynamics&) = default;
+};
+
+/// A point of a body that is recorded, in the input `body.point`.
+struct RecordedPoint {
+  BodyName body = {};
+  BodyPoint point = {};
+
+  friend bool operator==(const RecordedPoint&, const RecordedPoint&) = default;
+};
+
+struct Record {
+  int every = 1;
+  std::vector<RecordedPoint> points = {};
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit& visit) {
+    using namespace base;
+    constexpr auto optional = Need::optional;
+    visit(Field{.key = "every",
+                .doc = "steps between records; the first and the last state are recorded always",
+                .range = {.min = 1.0, .max = 1e9},
+                .need = optional},
+          self.every);
+    visit(Field{.key = "points", .doc = "points of bodies, `body.point`", .need = optional}, self.points);
+    visit(Later{.key = "fields", .doc = "fields of solids"});
+    visit(Later{.key = "probes", .doc = "distances between points of solids"});
+  }
+  friend bool operator==(const Record&, const Record&) = default;
+};
+
+enum class LinearSolver { automatic, dense, tree, bordered };
+
+inline std::span<const base::Word<LinearSolver>> words(LinearSolver) {
+  static constexpr base::Word<LinearSolver> all[] = {
+      {.word = "auto", .value = LinearSolver::automatic, .doc = "by the size and shape of the system"},
+      {.word = "dense", .value = LinearSolver::dense, .doc = "dense matrices in joint coordinates"},
+      {.word = "tree", .value = LinearSolver::tree, .doc = "elimination along the kinematic tree"},
+      {.word = "bordered",
+       .value = LinearSolver::bordered,
+       .doc = "the tree with a dense border for loops and far couplings"},
+  };
+  return all;
+}
+
+struct Solver {
+  double tolerance = 1e-10;
+  int max_iterations = 30;
+  LinearSolver linear = LinearSolver::automatic;
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit& visit) {
+    using namespace base;
+    constexpr auto optional = Need::optional;
+    visit(Field{.key = "tolerance",
+                .doc = "relative residual at which Newton's iteration ends",
+                .range = {.min = 0.0, .max = 1.0, .min_open = true, .max_open = true},
+                .need = optional},
+          self.tolerance);
+    visit(Field{.key = "max_iterations",
+                .doc = "largest number of Newton iterations a step",
+                .range = {.min = 1.0, .max = 1e4},
+                .need = optional},
+          self.max_iterations);
+    visit(Field{.key = "linear", .doc = "linear solver", .need = optional}, self.linear);
+  }
+  friend bool operator==(const Solver&, const Solver&) = default;
+};
+
+}  // namespace muldi::scene

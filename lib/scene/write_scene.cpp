@@ -1,0 +1,211 @@
+// Scenes to YAML: the inverse of the reader, from the same descriptions.
+#include <algorithm>
+#include <utility>
+
+#include "base/text.hpp"
+#include "scene/node.hpp"
+#include "scene/read_scene.hpp"
+#include "scene/time_functions.hpp"
+
+namespace muldi::scene {
+namespace {
+
+/// A number as YAML 1.1 and 1.2 readers take it: `1.0e-10`, not `1e-10`, which is text to the former.
+Node number(double value) {
+  std::string text = base::number_text(value);
+  const std::size_t exponent = text.find('e');
+  if (exponent != text.npos && text.find('.') == text.npos) text.insert(exponent, ".0");
+  return Node::scalar(std::move(text));
+}
+/// A word that stands bare; words that YAML reads as something else come in quotes.
+Node word(std::string_view text) {
+  const bool bare = !text.empty() && text != "null" && text != "Null" && text != "NULL" &&
+                    std::all_of(text.begin(), text.end(),
+                                [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; });
+  return Node::scalar(std::string(text), !bare);
+}
+
+class FieldWriter;
+template <class T>
+requires requires(const T& value, FieldWriter& writer) { T::describe(value, writer); }
+Node to_node(const T& value);
+
+Node to_node(double value) { return number(value); }
+Node to_node(int value) { return Node::scalar(std::to_string(value)); }
+Node to_node(const std::string& value) { return Node::scalar(value, true); }
+
+template <class T, std::size_t n>
+Node to_node(const std::array<T, n>& values) {
+  Node list = Node::sequence();
+  for (const T& value : values) list.items.push_back(to_node(value));
+  return list;
+}
+
+template <class T>
+requires std::is_enum_v<T> Node to_node(T value) {
+  for (const base::Word<T>& known : words(value)) {
+    if (known.value == value) return word(known.word);
+  }
+  return {};
+}
+
+template <Family family>
+Node to_node(const Reference<family>& value) {
+  return word(value.name);
+}
+
+Node to_node(const base::UnitSystem& units) {
+  Node map = Node::map();
+  return map.with("length", to_node(units.length()))
+      .with("mass", to_node(units.mass()))
+      .with("time", to_node(units.time()))
+      .with("current", to_node(units.current()));
+}
+
+Node to_node(const Inertia& value) {
+  const Mat3& j = value.tensor;
+  const bool principal = j[0][1] == 0 && j[0][2] == 0 && j[1][0] == 0 && j[1][2] == 0 && j[2][0] == 0 && j[2][1] == 0;
+  return principal ? to_node(Vec3{j[0][0], j[1][1], j[2][2]}) : to_node(j);
+}
+
+Node to_node(const Orientation& value) { return Node::map().with("matrix", to_node(value.matrix)); }
+
+Node to_node(const BodyPoint& value) { return value.name.empty() ? to_node(value.position) : word(value.name); }
+
+Node to_node(const RecordedPoint& value) { return Node::scalar(value.body.name + "." + value.point.name, true); }
+
+Node to_node(const InitialFrom& value) {
+  switch (value.kind) {
+    case InitialFrom::Kind::scene:
+      return word("scene");
+    case InitialFrom::Kind::static_equilibrium:
+      return word("static_equilibrium");
+    case InitialFrom::Kind::record:
+      break;
+  }
+  return Node::scalar(value.file, true);
+}
+
+Node to_node(const JointMomentum& value) {
+  Node list = Node::sequence();
+  for (const double momentum : value.values) list.items.push_back(number(momentum));
+  return list;
+}
+
+Node to_node(const base::TimeFunction& function);
+Node to_node(const Control& value);
+Node to_node(const Drive& value);
+
+Node to_node(const std::optional<Stops>& value);
+
+/// Visitor that appends the fields of a value to a map.
+class FieldWriter {
+ public:
+  explicit FieldWriter(Node& map) : map_(map) {}
+
+  template <class T>
+  void operator()(const base::Field& field, const T& value) {
+    append(field.key, value);
+  }
+  template <class T>
+  void operator()(const CoordinateField& field, const std::vector<T>& values) {
+    append(field.key, values);
+  }
+  template <class... Components>
+  void operator()(const base::Choice& choice, const std::variant<Components...>& value) {
+    std::visit(
+        [&](const auto& component) {
+          map_.with(std::string(choice.key), word(component.name));
+          component.describe(component, *this);
+        },
+        value);
+  }
+  void operator()(const base::Later&) {}
+
+ private:
+  template <class T>
+  void append(std::string_view key, const T& value) {
+    map_.with(std::string(key), to_node(value));
+  }
+  void append(std::string_view key, const std::string& value) {
+    if (!value.empty()) map_.with(std::string(key), to_node(value));
+  }
+  template <class T>
+  void append(std::string_view key, const std::optional<T>& value) {
+    if (value) append(key, *value);
+  }
+  template <class T>
+  void append(std::string_view key, const std::vector<T>& values) {
+    if (values.empty()) return;
+    Node list = Node::sequence();
+    for (const T& value : values) list.items.push_back(to_node(value));
+    map_.with(std::string(key), std::move(list));
+  }
+  template <class T>
+  void append(std::string_view key, const Named<T>& section) {
+    if (section.empty()) return;
+    Node map = Node::map();
+    for (const Entry<T>& entry : section) map.with(entry.name, to_node(entry.value));
+    map_.with(std::string(key), std::move(map));
+  }
+
+  Node& map_;
+};
+
+template <class T>
+requires requires(const T& value, FieldWriter& writer) { T::describe(value, writer); }
+Node to_node(const T& value) {
+  Node map = Node::map();
+  FieldWriter writer(map);
+  T::describe(value, writer);
+  return map;
+}
+
+Node to_node(const std::optional<Stops>& value) {
+  if (!value) return {};
+  Node map = Node::map();
+  FieldWriter writer(map);
+  describe_stops(Coordinate::slide, *value, writer);
+  return map;
+}
+
+struct FunctionWriter {
+  Node operator()(double constant) const { return number(constant); }
+  Node operator()(const base::Samples& samples) const {
+    Node rows = Node::sequence();
+    for (std::size_t i = 0; i < samples.times.size(); ++i) {
+      rows.items.push_back(Node::sequence({number(samples.times[i]), number(samples.values[i])}));
+    }
+    return Node::map().with(samples.between == base::Samples::Between::held ? "steps" : "table", std::move(rows));
+  }
+  Node operator()(const base::Ramp& ramp) const {
+    Node map = Node::map();
+    FieldWriter writer(map);
+    describe_ramp(base::dimension::none, ramp, writer);
+    return Node::map().with("ramp", std::move(map));
+  }
+  Node operator()(const base::Sine& sine) const {
+    Node map = Node::map();
+    FieldWriter writer(map);
+    describe_sine(base::dimension::none, sine, writer);
+    return Node::map().with("sine", std::move(map));
+  }
+  Node operator()(const base::Expression& expression) const {
+    return Node::map().with("expression", Node::scalar(expression.text(), true));
+  }
+};
+
+Node to_node(const base::TimeFunction& function) { return std::visit(FunctionWriter{}, function.kind()); }
+
+Node to_node(const Control& value) { return Node::map().with(to_node(value.quantity).text, to_node(value.value)); }
+
+Node to_node(const Drive& value) {
+  if (value.control.name.empty()) return to_node(value.value);
+  return Node::map().with("control", to_node(value.control));
+}
+
+}  // namespace
+
+std::string resolved_text(const Scene& scene) { return to_yaml(to_node(scene)); }
+
+}  // namespace muldi::scene
