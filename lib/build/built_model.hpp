@@ -1,0 +1,46 @@
+#pragma once
+/// Scene -> Model.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/diagnostic.hpp"
+#include "model/model.hpp"
+#include "multibody/multibody_observables.hpp"
+#include "multibody/tree_manifold.hpp"
+#include "scene/scene.hpp"
+
+namespace muldi::build {
+
+/// Counts for the summary of `validate`, taken from the built model.
+struct Assembled {
+  std::size_t muscles = 0;
+  std::size_t free_actuators = 0;
+  std::size_t springs = 0;
+  std::size_t loads = 0;
+  std::size_t joint_forces = 0;
+  bool damping = false;  ///< any viscous term
+  bool gravity = false;
+  bool electric = false;  ///< any muscle that can be charged
+};
+
+/// The model with what it keeps alive, and the way back to the names of the scene.
+struct BuiltModel {
+  std::unique_ptr<model::Model> model;
+  const multibody::TreeManifold* manifold = nullptr;       ///< of the model
+  std::unique_ptr<multibody::JointRecords> joint_records;  ///< referred to by observables
+  std::vector<base::Diagnostic> notes;                     ///< small gaps that were closed, and the like
+  std::size_t n_named_controls = 0;  ///< the scene's controls come first; then functions of drives
+  Assembled assembled;
+
+  /// The joint of the kinematic tree with this index in the scene.
+  const multibody::Joint& joint(std::size_t scene_index) const { return manifold->tree().joints[scene_index]; }
+  /// The link that a scene joint carries, or null for a loop-closing joint.
+  const multibody::TreeLink* link_of_joint(std::size_t scene_index) const;
+};
+
+/// Builds everything that the scene holds and nothing else. InputError with all that is wrong (joints that do not
+/// close, axes that are not perpendicular, loops that cannot be placed), located in the scene.
+BuiltModel build_model(const scene::Scene& scene);
+
+}  // namespace muldi::build

@@ -1,0 +1,33 @@
+#pragma once
+/// Checkpoints: everything that goes on bit for bit, as named vectors.
+#include "multibody/tree_manifold.hpp"
+#include "results/recorder.hpp"
+#include "scene/scene.hpp"
+#include "variational/time_loop.hpp"
+
+namespace muldi::pipeline {
+
+/// Writes states into a checkpoint of fixed shape without allocating.
+class CheckpointWriter {
+ public:
+  /// `n_row`: values of one recorded row (the next row may refer to them).
+  CheckpointWriter(const model::Manifold& manifold, std::size_t n_row);
+
+  const results::Checkpoint& first() const { return checkpoint_; }
+  const results::Checkpoint& write(const variational::State& state, const variational::Ledger& ledger,
+                                   const variational::StepReport& last, std::span<const double> row);
+
+ private:
+  results::Checkpoint checkpoint_;
+};
+
+/// True if the checkpoint was taken in the dynamics, not before.
+bool in_dynamics(const results::Checkpoint& checkpoint);
+
+/// The state at a checkpoint; InputError if it belongs to another system.
+variational::State state_of(const results::Checkpoint& checkpoint, const scene::Scene& scene,
+                            const model::Manifold& manifold);
+void restore(const results::Checkpoint& checkpoint, variational::Ledger& ledger, variational::StepReport& last,
+             std::span<double> row);
+
+}  // namespace muldi::pipeline

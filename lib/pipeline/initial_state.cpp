@@ -1,0 +1,326 @@
+#include "pipeline/initial_state.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "build/place_bodies.hpp"
+#include "multibody/joint_coordinate.hpp"
+#include "pipeline/checkpoint.hpp"
+#include "statics/sweep.hpp"
+#include "variational/node_values.hpp"
+
+namespace muldi::pipeline {
+namespace {
+
+using multibody::JointCoordinate;
+using multibody::Motion;
+
+constexpr double closing_goal = 1e-13;   // of the loop rows, dimensionless
+constexpr double closing_limit = 1e-10;  // beyond which the loops stay open
+constexpr double longest_correction = 0.3;
+constexpr double contradiction = 1e-9;  // of the wanted velocity
+
+/// A linear condition row . w = value on minimal rates (or on their correction).
+struct Condition {
+  Eigen::VectorXd row;
+  double value = 0.0;
+  scene::Origin origin = {};
+  std::string what = {};
+};
+
+Eigen::MatrixXd rows_of(const std::vector<Condition>& conditions, Eigen::Index n_v) {
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(conditions.size()), n_v);
+  for (std::size_t i = 0; i < conditions.size(); ++i)
+    rows.row(static_cast<Eigen::Index>(i)) = conditions[i].row.transpose();
+  return rows;
+}
+
+class InitialConditions {
+ public:
+  InitialConditions(const scene::Scene& scene, const build::BuiltModel& built, const Eigen::VectorXd& x)
+      : scene_(scene), built_(built), manifold_(*built.manifold), frame_(manifold_.make_frame()), q_(manifold_.n_q()) {
+    move_to(x);
+  }
+
+  void move_to(const Eigen::VectorXd& x) {
+    manifold_.configuration(x, q_);
+    manifold_.update(x, q_, *frame_);
+  }
+
+  /// Rows of the loops with their violation as value.
+  std::vector<Condition> loops() const {
+    Eigen::MatrixXd B(manifold_.n_c(), manifold_.n_v());
+    Eigen::VectorXd g(manifold_.n_c());
+    manifold_.project_constraints(*frame_, B);
+    manifold_.constraints(q_, g);
+    std::vector<Condition> conditions;
+    for (Eigen::Index i = 0; i < B.rows(); ++i) conditions.push_back({.row = B.row(i).transpose(), .value = -g[i]});
+    return conditions;
+  }
+
+  /// Wanted coordinates of loop-closing joints: what is missing.
+  void add_cut_positions(std::vector<Condition>& conditions) const {
+    for_each_cut_coordinate([&](const auto& entry, std::size_t k, const JointCoordinate& coordinate) {
+      if (entry.value.position.empty()) return;
+      const double missing = entry.value.position[k] - coordinate.value(q_, {}, {});
+      conditions.push_back({.row = gradient(coordinate), .value = missing, .origin = entry.origin});
+    });
+  }
+
+  std::vector<Condition> velocities() const {
+    std::vector<Condition> conditions = loops();
+    for (Condition& condition : conditions) condition.value = 0.0;
+    for (const auto& entry : scene_.initial.joints) {
+      const auto* link = built_.link_of_joint(static_cast<std::size_t>(scene_.joints.index(entry.name)));
+      if (link == nullptr) continue;
+      for (std::size_t k = 0; k < entry.value.velocity.size(); ++k) {
+        conditions.push_back({.row = Eigen::VectorXd::Unit(manifold_.n_v(), link->first_rate + static_cast<int>(k)),
+                              .value = entry.value.velocity[k],
+                              .origin = entry.origin,
+                              .what = "joint velocity"});
+      }
+    }
+    for_each_cut_coordinate([&](const auto& entry, std::size_t k, const JointCoordinate& coordinate) {
+      if (entry.value.velocity.empty()) return;
+      conditions.push_back({.row = gradient(coordinate),
+                            .value = entry.value.velocity[k],
+                            .origin = entry.origin,
+                            .what = "joint velocity"});
+    });
+    for (const auto& entry : scene_.initial.bodies) add_body(entry, conditions);
+    return conditions;
+  }
+
+ private:
+  template <class Visit>
+  void for_each_cut_coordinate(Visit visit) const {
+    for (const auto& entry : scene_.initial.joints) {
+      const auto index = static_cast<std::size_t>(scene_.joints.index(entry.name));
+      if (built_.link_of_joint(index) != nullptr) continue;
+      std::size_t k = 0;
+      for (const Motion& motion : built_.joint(index).pattern.motions) {
+        if (motion.kind == Motion::Kind::ball) {
+          throw base::InputError({scene::error_at(
+              entry.origin,
+              "this joint closes a loop; initial values of a rotation vector are possible on the other "
+              "joints of the loop only")});
+        }
+        visit(entry, k++, JointCoordinate(built_.joint(index), motion, -1));
+      }
+    }
+  }
+
+  Eigen::VectorXd gradient(const JointCoordinate& coordinate) const {
+    Eigen::VectorXd in_q = Eigen::VectorXd::Zero(manifold_.n_q());
+    coordinate.add_gradient(q_, 1.0, in_q);
+    return projected(in_q);
+  }
+
+  Eigen::VectorXd projected(const Eigen::VectorXd& in_q) const {
+    Eigen::VectorXd row(manifold_.n_v());
+    manifold_.project(*frame_, in_q, row);
+    return row;
+  }
+
+  void add_body(const scene::Entry<scene::BodyVelocity>& entry, std::vector<Condition>& conditions) const {
+    const int first = 12 * scene_.bodies.index(entry.name);
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d unit = Eigen::Vector3d::Unit(k);
+      if (entry.value.velocity) {
+        const Eigen::VectorXd in_q = Eigen::VectorXd::Unit(manifold_.n_q(), first + k);
+        conditions.push_back({.row = projected(in_q),
+                              .value = (*entry.value.velocity)[static_cast<std::size_t>(k)],
+                              .origin = entry.origin,
+                              .what = "velocity"});
+      }
+      if (entry.value.angular_velocity) {
+        // omega = 1/2 sum d_i x d_i'
+        Eigen::VectorXd in_q = Eigen::VectorXd::Zero(manifold_.n_q());
+        for (int i = 0; i < 3; ++i) {
+          in_q.segment<3>(first + 3 + 3 * i) = 0.5 * unit.cross(Eigen::Vector3d(q_.segment<3>(first + 3 + 3 * i)));
+        }
+        conditions.push_back({.row = projected(in_q),
+                              .value = (*entry.value.angular_velocity)[static_cast<std::size_t>(k)],
+                              .origin = entry.origin,
+                              .what = "angular velocity"});
+      }
+    }
+  }
+
+  const scene::Scene& scene_;
+  const build::BuiltModel& built_;
+  const multibody::TreeManifold& manifold_;
+  std::unique_ptr<model::Frame> frame_;
+  Eigen::VectorXd q_;
+};
+
+/// Moves what is free until the loops close and loop-closing joints have their positions.
+void close_loops(const scene::Scene& scene, const build::BuiltModel& built, const std::vector<bool>& held,
+                 Eigen::VectorXd& x) {
+  const multibody::TreeManifold& manifold = *built.manifold;
+  if (manifold.n_c() == 0) return;
+  const Eigen::VectorXd scale = manifold.rate_scale();
+  InitialConditions conditions(scene, built, x);
+  double gap = 0.0;
+  for (int iteration = 0; iteration < 100; ++iteration) {
+    conditions.move_to(x);
+    std::vector<Condition> wanted = conditions.loops();
+    conditions.add_cut_positions(wanted);
+    Eigen::MatrixXd rows = rows_of(wanted, manifold.n_v()) * scale.asDiagonal();
+    Eigen::VectorXd missing(rows.rows());
+    for (std::size_t i = 0; i < wanted.size(); ++i) missing[static_cast<Eigen::Index>(i)] = wanted[i].value;
+    gap = missing.lpNorm<Eigen::Infinity>();
+    if (gap <= closing_goal) return;
+    for (std::size_t k = 0; k < held.size(); ++k) {
+      if (held[k]) rows.col(static_cast<Eigen::Index>(k)).setZero();
+    }
+    Eigen::VectorXd step = rows.completeOrthogonalDecomposition().solve(missing);
+    const double size = step.lpNorm<Eigen::Infinity>();
+    if (size > longest_correction) step *= longest_correction / size;
+    if (size < 1e-15) break;
+    manifold.retract(x, scale.cwiseProduct(step), x);
+  }
+  if (gap <= closing_limit) return;
+  const scene::Origin origin = scene.initial.joints.empty() ? scene.origin : scene.initial.joints[0].origin;
+  throw base::InputError({scene::error_at(
+      origin, base::format("the initial joint positions contradict the loops: they stay open by {:.3g} of the scene's "
+                           "size; give fewer positions, or ones that can be reached",
+                           gap))});
+}
+
+Eigen::VectorXd rates_of_momentum(const scene::Scene& scene, const build::BuiltModel& built, const Eigen::VectorXd& x) {
+  const multibody::TreeManifold& manifold = *built.manifold;
+  Eigen::VectorXd m = Eigen::VectorXd::Zero(manifold.n_v());
+  for (const auto& entry : scene.initial.momentum) {
+    const auto* link = built.link_of_joint(static_cast<std::size_t>(scene.joints.index(entry.name)));
+    if (link == nullptr) {
+      throw base::InputError(
+          {scene::error_at(entry.origin, "this joint closes a loop; give the momentum of another joint of the loop")});
+    }
+    for (std::size_t k = 0; k < entry.value.values.size(); ++k) {
+      m[link->first_rate + static_cast<int>(k)] = entry.value.values[k];
+    }
+  }
+  Eigen::VectorXd q(manifold.n_q());
+  manifold.configuration(x, q);
+  const auto frame = manifold.make_frame();
+  manifold.update(x, q, *frame);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(manifold.n_q());
+  std::vector<double> u(built.model->controls.size());
+  built.model->evaluate_controls(0.0, u);
+  math::BlockMatrix M(*built.model->pattern);
+  built.model->tangent({.q0 = q, .q1 = q, .q = q, .v = zero, .u = u}, model::TangentWeights::mass(), M);
+  const auto solver = manifold.make_solver(*built.model->pattern, "auto");
+  Eigen::VectorXd rates = Eigen::VectorXd::Zero(manifold.n_v());
+  Eigen::VectorXd lambda = Eigen::VectorXd::Zero(manifold.n_c());
+  if (solver->factorise(*frame, *frame, M)) solver->solve(m, Eigen::VectorXd::Zero(manifold.n_c()), rates, lambda);
+  return rates;
+}
+
+}  // namespace
+
+Eigen::VectorXd initial_coordinates(const scene::Scene& scene, const build::BuiltModel& built) {
+  Eigen::VectorXd x = built.manifold->reference();
+  std::vector<bool> held(static_cast<std::size_t>(built.manifold->n_v()), false);
+  for (const auto& entry : scene.initial.joints) {
+    if (entry.value.position.empty()) continue;
+    const auto index = static_cast<std::size_t>(scene.joints.index(entry.name));
+    const auto* link = built.link_of_joint(index);
+    if (link == nullptr) continue;
+    const multibody::Joint& joint = built.joint(index);
+    multibody::stored_coordinates(joint, entry.value.position.data(), x.data() + link->first_coordinate);
+    for (int k = 0; k < joint.pattern.n_rates(); ++k) held[static_cast<std::size_t>(link->first_rate + k)] = true;
+  }
+  close_loops(scene, built, held, x);
+  return x;
+}
+
+Outcome settle(const scene::Scene& scene, const build::BuiltModel& built, Eigen::VectorXd& x) {
+  std::vector<double> u(built.model->controls.size());
+  built.model->evaluate_controls(0.0, u);
+  statics::StaticState state{.x = x, .multipliers = Eigen::VectorXd::Zero(built.manifold->n_c())};
+  statics::SweepOptions options{.from = 0.0, .to = 1.0, .steps = 4};
+  options.equilibrium.tolerance = scene.solver.tolerance;
+  statics::Sweep sweep(*built.model, std::vector<double>(u.size(), 0.0), u, options);
+  const statics::SweepResult result = sweep.run(state, {});
+  if (result.end != statics::SweepResult::End::completed) {
+    return {.status = variational::Status::loss_of_equilibrium,
+            .sentence = "no static equilibrium under the controls at t = 0: " + result.sentence};
+  }
+  x = state.x;
+  return {};
+}
+
+Eigen::VectorXd initial_rates(const scene::Scene& scene, const build::BuiltModel& built, const Eigen::VectorXd& x) {
+  const multibody::TreeManifold& manifold = *built.manifold;
+  Eigen::VectorXd rates = Eigen::VectorXd::Zero(manifold.n_v());
+  bool any = !scene.initial.bodies.empty();
+  for (const auto& entry : scene.initial.joints) any |= !entry.value.velocity.empty();
+  if (any) {
+    const std::vector<Condition> conditions = InitialConditions(scene, built, x).velocities();
+    const Eigen::VectorXd scale = manifold.rate_scale();
+    const Eigen::MatrixXd rows = rows_of(conditions, manifold.n_v()) * scale.asDiagonal();
+    Eigen::VectorXd wanted(rows.rows());
+    for (std::size_t i = 0; i < conditions.size(); ++i) wanted[static_cast<Eigen::Index>(i)] = conditions[i].value;
+    const Eigen::VectorXd solution = rows.completeOrthogonalDecomposition().solve(wanted);
+    const Eigen::VectorXd reached = rows * solution;
+    std::vector<base::Diagnostic> errors;
+    for (std::size_t i = 0; i < conditions.size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      if (std::abs(reached[at] - wanted[at]) <= contradiction * wanted.lpNorm<Eigen::Infinity>()) continue;
+      if (conditions[i].what.empty()) continue;
+      errors.push_back(scene::error_at(
+          conditions[i].origin,
+          base::format(
+              "the {} {:.6g} contradicts the joints or the other initial velocities (nearest possible: {:.6g})",
+              conditions[i].what, wanted[at], reached[at])));
+    }
+    if (!errors.empty()) throw base::InputError(std::move(errors));
+    rates = scale.cwiseProduct(solution);
+  }
+  if (!scene.initial.momentum.empty()) rates += rates_of_momentum(scene, built, x);
+  return rates;
+}
+
+Outcome initial_state(const scene::Scene& scene, const build::BuiltModel& built,
+                      const std::optional<results::Checkpoint>& earlier, variational::State& state) {
+  const multibody::TreeManifold& manifold = *built.manifold;
+  Eigen::VectorXd rates;
+  state = {};
+  std::vector<double> u(built.model->controls.size());
+  built.model->evaluate_controls(scene.dynamics ? 0.5 * scene.dynamics->step : 0.0, u);
+  if (earlier) {
+    state = state_of(*earlier, scene, manifold);
+    variational::NodeEvaluator nodes(*built.model, "auto");
+    variational::NodeValues values;
+    manifold.configuration(state.x, state.q);
+    nodes.evaluate(state, u, u, values);
+    rates = values.rate;
+  } else {
+    state.x = initial_coordinates(scene, built);
+    if (scene.initial.from.kind == scene::InitialFrom::Kind::static_equilibrium) {
+      const Outcome outcome = settle(scene, built, state.x);
+      if (!outcome.completed()) return outcome;
+    }
+  }
+  const Eigen::VectorXd added = initial_rates(scene, built, state.x);
+  rates = rates.size() == 0 ? added : Eigen::VectorXd(rates + added);
+  state.q.setZero(manifold.n_q());
+  manifold.configuration(state.x, state.q);
+  const auto frame = manifold.make_frame();
+  manifold.update(state.x, state.q, *frame);
+  Eigen::VectorXd v = Eigen::VectorXd::Zero(manifold.n_q());
+  manifold.lift(*frame, rates, v);
+  variational::NodeEvaluator(*built.model, "auto").momentum_of(state.q, v, u, state.p);
+  state.step = 0;
+  state.t = 0.0;
+  state.increment = (scene.dynamics ? scene.dynamics->step : 0.0) * rates;
+  state.multipliers = Eigen::VectorXd::Zero(manifold.n_c());
+  return {};
+}
+
+}  // namespace muldi::pipeline

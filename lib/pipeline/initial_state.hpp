@@ -1,0 +1,27 @@
+#pragma once
+/// The state at t = 0 that a scene asks for.
+#include <optional>
+
+#include "build/built_model.hpp"
+#include "pipeline/outcome.hpp"
+#include "results/recorder.hpp"
+#include "variational/state.hpp"
+
+namespace muldi::pipeline {
+
+/// Coordinates with the given joint positions and closed loops (least-norm correction of the others); InputError if the
+/// positions contradict the loops.
+Eigen::VectorXd initial_coordinates(const scene::Scene& scene, const build::BuiltModel& built);
+
+/// The static equilibrium under the controls at t = 0, from `x`; the outcome is not completed if there is none.
+Outcome settle(const scene::Scene& scene, const build::BuiltModel& built, Eigen::VectorXd& x);
+
+/// Minimal velocities of the given joint and body velocities (least norm) and joint momenta; InputError if they
+/// contradict each other or the loops.
+Eigen::VectorXd initial_rates(const scene::Scene& scene, const build::BuiltModel& built, const Eigen::VectorXd& x);
+
+/// The state at t = 0; `earlier` is the checkpoint of the record that `initial.from` names.
+Outcome initial_state(const scene::Scene& scene, const build::BuiltModel& built,
+                      const std::optional<results::Checkpoint>& earlier, variational::State& state);
+
+}  // namespace muldi::pipeline

@@ -1,0 +1,17 @@
+#pragma once
+/// How a pipeline ended.
+#include <string>
+
+#include "variational/state.hpp"
+
+namespace muldi::pipeline {
+
+struct Outcome {
+  variational::Status status = variational::Status::completed;
+  std::string sentence = {};  ///< what happened and what may help; empty if completed
+  double time = 0.0;          ///< simulated time reached
+
+  bool completed() const { return status == variational::Status::completed; }
+};
+
+}  // namespace muldi::pipeline

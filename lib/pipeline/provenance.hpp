@@ -1,0 +1,15 @@
+#pragma once
+/// Attributes that say what made a result file.
+#include "pipeline/run_context.hpp"
+#include "results/recorder.hpp"
+#include "scene/scene.hpp"
+
+namespace muldi::pipeline {
+
+/// Version, commit, compiler, libraries, units, resolved scene, time of creation, command line, threads.
+void set_provenance(results::Recorder& recorder, const scene::Scene& scene, const RunContext& context);
+
+/// Wall time of each phase, as attributes wall_time.<phase> in seconds.
+void set_wall_times(results::Recorder& recorder, const base::Phases& phases);
+
+}  // namespace muldi::pipeline

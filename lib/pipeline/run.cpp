@@ -1,0 +1,143 @@
+#include "pipeline/run.hpp"
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "pipeline/checkpoint.hpp"
+#include "pipeline/initial_state.hpp"
+#include "pipeline/node_rows.hpp"
+#include "pipeline/provenance.hpp"
+#include "pipeline/run_statics.hpp"
+#include "scene/scene.hpp"
+#include "variational/time_loop.hpp"
+
+namespace muldi::pipeline {
+namespace {
+
+std::string linear_of(const scene::Solver& solver) {
+  for (const auto& word : scene::words(solver.linear)) {
+    if (word.value == solver.linear) return std::string(word.word);
+  }
+  return "auto";
+}
+
+variational::LoopOptions loop_options(const scene::Scene& scene) {
+  variational::LoopOptions options;
+  options.dt = scene.dynamics->step;
+  options.steps = scene.dynamics->n_steps();
+  options.record_every = scene.record.every;
+  options.step.tolerance = scene.solver.tolerance;
+  options.step.max_iterations = scene.solver.max_iterations;
+  options.step.linear = linear_of(scene.solver);
+  return options;
+}
+
+std::string warning_of(const variational::StepReport& report, const variational::StepOptions& options, double t) {
+  if (report.rotation > options.warn_rotation) {
+    return base::format(
+        "at t = {:.6g} a body turns by {:.3g} rad in one step; results lose accuracy, use a smaller step", t,
+        report.rotation);
+  }
+  return base::format("at t = {:.6g} the loops come near a change point (regularity {:.3g} of that at the start)", t,
+                      report.loop_regularity);
+}
+
+/// The dynamics of a run, with what is restored from and put into checkpoints.
+class DynamicsRun {
+ public:
+  DynamicsRun(const scene::Scene& scene, const build::BuiltModel& built, results::Recorder& recorder)
+      : scene_(scene),
+        built_(built),
+        recorder_(recorder),
+        options_(loop_options(scene)),
+        rows_(recorder, scene, built, NodeRows::Kind::dynamics,
+              static_cast<std::size_t>(options_.steps / options_.record_every + 2)),
+        checkpoints_(*built.manifold, rows_.observed().size()) {
+    recorder.declare_checkpoint(checkpoints_.first());
+  }
+
+  Outcome prepare(const std::optional<results::Checkpoint>& earlier) {
+    return initial_state(scene_, built_, earlier, state_);
+  }
+
+  void resume(const results::Checkpoint& checkpoint) {
+    state_ = state_of(checkpoint, scene_, *built_.manifold);
+    state_.t = static_cast<double>(state_.step) * options_.dt;
+    restore(checkpoint, ledger_, last_, rows_.observed());
+  }
+
+  Outcome run(RunContext& context) {
+    variational::TimeLoop loop(*built_.model, options_);
+    variational::LoopCallbacks callbacks;
+    callbacks.record = [&](const variational::NodeRecord& node) {
+      rows_.write(node);
+      if (context.progress) context.progress(node.step, options_.steps, node.t);
+    };
+    callbacks.checkpoint = [&](const variational::State& state, const variational::Ledger& ledger,
+                               const variational::StepReport& last) {
+      recorder_.write_checkpoint(checkpoints_.write(state, ledger, last, rows_.observed()));
+    };
+    callbacks.interrupted = context.interrupted;
+    callbacks.warn = [&](const variational::StepReport& report, double t) {
+      if (context.warn) context.warn(warning_of(report, options_.step, t));
+    };
+    const variational::LoopResult result = loop.run(state_, ledger_, last_, callbacks);
+    return {.status = result.status, .sentence = result.sentence, .time = result.t};
+  }
+
+ private:
+  const scene::Scene& scene_;
+  const build::BuiltModel& built_;
+  results::Recorder& recorder_;
+  variational::LoopOptions options_;
+  NodeRows rows_;
+  CheckpointWriter checkpoints_;
+  variational::State state_;
+  variational::Ledger ledger_;
+  variational::StepReport last_;
+};
+
+Outcome run_parts(std::optional<StaticsRun>& statics, std::optional<DynamicsRun>& dynamics, bool resumed,
+                  RunContext& context) {
+  Outcome outcome;
+  if (statics && !resumed) {
+    const base::Phases::Scope scope(context.phases, "statics");
+    outcome = statics->run(context);
+  }
+  if (dynamics && outcome.completed()) {
+    const base::Phases::Scope scope(context.phases, "dynamics");
+    outcome = dynamics->run(context);
+  }
+  return outcome;
+}
+
+}  // namespace
+
+Outcome run(const scene::Scene& scene, const build::BuiltModel& built, results::Recorder& recorder, RunContext& context,
+            const std::optional<results::Checkpoint>& earlier) {
+  const std::optional<results::Checkpoint> point = recorder.resume_point();
+  const bool resumed = point && in_dynamics(*point);
+  std::optional<StaticsRun> statics;
+  std::optional<DynamicsRun> dynamics;
+  Outcome outcome;
+  {
+    const base::Phases::Scope scope(context.phases, "prepare");
+    if (scene.statics) statics.emplace(scene, built, recorder);
+    if (scene.dynamics) dynamics.emplace(scene, built, recorder);
+    set_provenance(recorder, scene, context);
+    if (statics && !resumed) statics->prepare();
+    if (dynamics) {
+      if (resumed) {
+        dynamics->resume(*point);
+      } else {
+        outcome = dynamics->prepare(earlier);
+      }
+    }
+    recorder.start();
+  }
+  if (outcome.completed()) outcome = run_parts(statics, dynamics, resumed, context);
+  set_wall_times(recorder, context.phases);
+  recorder.close({.status = variational::name_of(outcome.status), .where = outcome.sentence, .time = outcome.time});
+  return outcome;
+}
+
+}  // namespace muldi::pipeline

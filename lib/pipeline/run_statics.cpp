@@ -1,0 +1,83 @@
+#include "pipeline/run_statics.hpp"
+
+#include "pipeline/initial_state.hpp"
+
+namespace muldi::pipeline {
+
+StaticsRun::StaticsRun(const scene::Scene& scene, const build::BuiltModel& built, results::Recorder& recorder)
+    : scene_(scene),
+      built_(built),
+      recorder_(recorder),
+      rows_(recorder, scene, built, NodeRows::Kind::statics, static_cast<std::size_t>(scene.statics->steps) + 1),
+      parts_(built.model->parts().size()),
+      zero_q_(Eigen::VectorXd::Zero(built.manifold->n_q())),
+      zero_v_(Eigen::VectorXd::Zero(built.manifold->n_v())),
+      constraint_force_(zero_q_) {}
+
+void StaticsRun::prepare() {
+  state_.x = initial_coordinates(scene_, built_);
+  state_.multipliers = Eigen::VectorXd::Zero(built_.manifold->n_c());
+}
+
+void StaticsRun::record(const statics::SweepPoint& point) {
+  const std::span<const double> x(point.state.x.data(), static_cast<std::size_t>(point.state.x.size()));
+  built_.model->energies({.x = x, .q = point.q, .v = zero_q_, .u = point.u}, parts_);
+  constraint_force_ = -point.force;
+  const model::NodeView view{.t = point.load,
+                             .x = point.state.x,
+                             .rate = zero_v_,
+                             .q = point.q,
+                             .v = zero_q_,
+                             .constraint_force = constraint_force_,
+                             .multipliers = point.state.multipliers,
+                             .u = point.u};
+  rows_.write({.load = point.load,
+               .stable = point.report.stability == statics::Stability::stable,
+               .iterations = point.report.iterations,
+               .residual = point.report.residual,
+               .violation = built_.manifold->violation(point.q),
+               .parts = parts_},
+              view);
+}
+
+Outcome StaticsRun::run(RunContext& context) {
+  const scene::Statics& said = *scene_.statics;
+  std::vector<double> u(built_.model->controls.size());
+  built_.model->evaluate_controls(0.0, u);
+  std::vector<double> direction(u.size(), 0.0);
+  statics::SweepOptions options{.steps = said.steps};
+  if (said.control) {
+    const auto swept = static_cast<std::size_t>(scene_.controls.index(said.control->name));
+    u[swept] = 0.0;
+    direction[swept] = 1.0;
+    options.from = said.from;
+    options.to = *said.to;
+  } else {
+    std::swap(u, direction);
+  }
+  options.continuation = said.continuation == scene::Continuation::natural ? statics::Continuation::natural
+                                                                           : statics::Continuation::arc_length;
+  options.equilibrium = {.tolerance = scene_.solver.tolerance};
+  statics::Sweep sweep(*built_.model, std::move(u), std::move(direction), options);
+  long row = 0;
+  const statics::SweepResult result = sweep.run(state_, {.record =
+                                                             [&](const statics::SweepPoint& point) {
+                                                               record(point);
+                                                               if (context.progress) {
+                                                                 context.progress(row++, said.steps, point.load);
+                                                               }
+                                                             },
+                                                         .interrupted = context.interrupted});
+  using End = statics::SweepResult::End;
+  if (result.end == End::loss_of_equilibrium) {
+    recorder_.set_attribute("statics", "critical_load_above", result.last_good);
+    recorder_.set_attribute("statics", "critical_load_below", result.first_bad);
+  }
+  const auto status = result.end == End::completed             ? variational::Status::completed
+                      : result.end == End::interrupted         ? variational::Status::interrupted
+                      : result.end == End::loss_of_equilibrium ? variational::Status::loss_of_equilibrium
+                                                               : variational::Status::no_convergence;
+  return {.status = status, .sentence = result.sentence};
+}
+
+}  // namespace muldi::pipeline

@@ -1,0 +1,33 @@
+#pragma once
+/// The `statics:` section of a scene: a curve of equilibria.
+#include "build/built_model.hpp"
+#include "pipeline/node_rows.hpp"
+#include "pipeline/outcome.hpp"
+#include "pipeline/run_context.hpp"
+#include "statics/sweep.hpp"
+
+namespace muldi::pipeline {
+
+class StaticsRun {
+ public:
+  StaticsRun(const scene::Scene& scene, const build::BuiltModel& built, results::Recorder& recorder);
+
+  /// Finds the starting configuration; InputError if the initial joint positions contradict the loops.
+  void prepare();
+  Outcome run(RunContext& context);
+
+ private:
+  void record(const statics::SweepPoint& point);
+
+  const scene::Scene& scene_;
+  const build::BuiltModel& built_;
+  results::Recorder& recorder_;
+  NodeRows rows_;
+  statics::StaticState state_;
+  std::vector<model::Energy> parts_;
+  Eigen::VectorXd zero_q_;
+  Eigen::VectorXd zero_v_;
+  Eigen::VectorXd constraint_force_;
+};
+
+}  // namespace muldi::pipeline
