@@ -1,0 +1,10 @@
+#pragma once
+/// Ctrl-C and SIGTERM as a question that loops ask: the run ends after the current step with its results on disk.
+
+namespace muldi::app {
+
+/// Installs the handlers; a second signal ends the process at once.
+void watch_interrupts();
+bool interrupt_asked();
+
+}  // namespace muldi::app
