@@ -11,8 +11,8 @@
 ///     }
 ///
 /// where `Self` is the type or its const. The type of the member says what is read: double (a quantity of dimension
-/// `unit`), int, bool, std::string, Vec3, std::optional<T>, std::vector<T>, an enum with a `words()` overload (Word), a
-/// described type, or a type for which the reader has a specialisation. A member of a component family also has
+/// `unit`), int, std::string, Vec3, std::optional<T>, std::vector<T>, an enum with a `words()` overload (Word), a
+/// described type, or a type for which the visitors have an overload. A member of a component family also has
 /// `static constexpr std::string_view name, doc`; a std::variant of the family (VariantOf) is visited with a Choice.
 #include <array>
 #include <cstddef>

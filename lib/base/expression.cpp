@@ -17,6 +17,7 @@ struct Expression::Program {
     parser.DefineConst("pi", 3.14159265358979323846);
     parser.DefineVar("t", &t);
     parser.SetExpr(text);
+    parser.Eval();  // compiles it, so that later evaluations do not allocate
   }
 };
 
@@ -39,7 +40,6 @@ Expression Expression::make(std::string_view text, std::string& error) {
   try {
     expression.text_ = std::string(text);
     expression.program_ = std::make_unique<Program>(expression.text_);
-    expression.program_->parser.Eval();
     int n_results = 0;
     expression.program_->parser.Eval(n_results);
     if (n_results == 1) return expression;

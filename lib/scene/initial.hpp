@@ -16,7 +16,7 @@ struct InitialFrom {
   enum class Kind { scene, static_equilibrium, record };
 
   Kind kind = Kind::scene;
-  std::string file = {};  ///< of a record, as written
+  std::string file = {};  ///< of a record, as written; path_of_file() finds it
   Origin origin = {};
 
   friend bool operator==(const InitialFrom&, const InitialFrom&) = default;
@@ -102,8 +102,8 @@ struct Initial {
     visit(
         Field{.key = "from",
               .doc =
-                  "scene: as drawn; static_equilibrium: under the controls at t = 0; or an earlier record (.h5) whose "
-                  "last state becomes t = 0",
+                  "scene: as drawn; static_equilibrium: under the controls at t = 0; or an earlier record (*.h5, from "
+                  "the scene's folder), whose last state becomes t = 0",
               .need = optional},
         self.from);
     visit(Field{.key = "joints", .doc = "joint coordinates and velocities by joint", .need = optional}, self.joints);

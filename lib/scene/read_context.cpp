@@ -26,11 +26,6 @@ base::Diagnostic warning_at(const Origin& origin, std::string message) {
 
 const base::UnitSystem& ReadContext::units() const { return scene_.units; }
 
-std::string ReadContext::beside_scene(std::string_view file) const {
-  const std::size_t slash = sources_[0].rfind('/');
-  return (slash == std::string::npos ? std::string() : sources_[0].substr(0, slash + 1)) + std::string(file);
-}
-
 void ReadContext::error(const Mark& mark, std::string message) { add(error_at(origin(mark), std::move(message))); }
 
 void ReadContext::error_elsewhere(base::Place place, std::string message) {

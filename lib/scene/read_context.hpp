@@ -29,8 +29,6 @@ class ReadContext {
   /// The scene as read so far; units come first, joints before the initial state, controls before statics.
   const Scene& scene() const { return scene_; }
   const base::UnitSystem& units() const;
-  /// Path of a file that the scene names, from its own folder.
-  std::string beside_scene(std::string_view file) const;
 
   /// An error at a node and the current key path.
   void error(const Mark& mark, std::string message);

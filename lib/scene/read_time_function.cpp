@@ -116,7 +116,7 @@ bool read_file(ReadContext& context, const Node& node, const base::Field& field,
     return false;
   };
   if (std::string why = why_outside(form.file); !why.empty()) return refuse(std::move(why));
-  const std::string path = context.beside_scene(form.file);
+  const std::string path = path_of_file(context.scene(), form.file);
   const InputFile file = read_input_file(path);
   if (!file.error.empty()) return refuse("cannot read " + base::in_quotes(path) + ": " + file.error);
   CsvColumns columns = read_csv(file.text, form.column);

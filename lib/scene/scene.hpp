@@ -89,4 +89,7 @@ struct Scene {
   }
 };
 
+/// The path of a file that the scene names: from the scene's folder unless it is absolute.
+std::string path_of_file(const Scene& scene, const std::string& file);
+
 }  // namespace muldi::scene

@@ -90,4 +90,11 @@ Material lumped_material(const Muscle& muscle, const Material& material) {
   return result;
 }
 
+std::string path_of_file(const Scene& scene, const std::string& file) {
+  const std::string& own = scene.origin.place.file;
+  const std::size_t slash = own.rfind('/');
+  if (file.front() == '/' || slash == std::string::npos) return file;
+  return own.substr(0, slash + 1) + file;
+}
+
 }  // namespace muldi::scene
