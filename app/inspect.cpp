@@ -1,12 +1,12 @@
 /// The verbs that only look: compare, info, schema.
 #include <cstdio>
 
+#include "app/exit_code.hpp"
+#include "app/verbs.hpp"
 #include "base/build_info.hpp"
 #include "base/text.hpp"
-#include "exit_code.hpp"
 #include "results/info.hpp"
 #include "scene/read_scene.hpp"
-#include "verbs.hpp"
 
 namespace muldi::app {
 

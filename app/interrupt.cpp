@@ -1,4 +1,4 @@
-#include "interrupt.hpp"
+#include "app/interrupt.hpp"
 
 #include <csignal>
 

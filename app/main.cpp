@@ -2,10 +2,10 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 
+#include "app/exit_code.hpp"
+#include "app/verbs.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "exit_code.hpp"
-#include "verbs.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "progress_bar.hpp"
+#include "app/progress_bar.hpp"
 
 #include <unistd.h>
 

@@ -1,16 +1,16 @@
 #include <filesystem>
 #include <optional>
 
+#include "app/exit_code.hpp"
+#include "app/interrupt.hpp"
+#include "app/progress_bar.hpp"
+#include "app/verbs.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "exit_code.hpp"
-#include "interrupt.hpp"
 #include "pipeline/run.hpp"
-#include "progress_bar.hpp"
 #include "results/hdf5_recorder.hpp"
 #include "results/result_file.hpp"
 #include "scene/read_scene.hpp"
-#include "verbs.hpp"
 
 namespace muldi::app {
 namespace {

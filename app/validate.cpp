@@ -1,12 +1,12 @@
 #include <cstdio>
 
+#include "app/exit_code.hpp"
+#include "app/verbs.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "exit_code.hpp"
 #include "pipeline/initial_state.hpp"
 #include "pipeline/summary.hpp"
 #include "scene/read_scene.hpp"
-#include "verbs.hpp"
 
 namespace muldi::app {
 
