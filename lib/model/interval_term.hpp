@@ -125,6 +125,13 @@ class IntervalTerm {
   /// Adds the energies at a node, one entry for each of parts().
   virtual void energies(const NodePoint& at, std::span<Energy> out) const = 0;
 
+  /// What a user should know about a state that can be computed but is beyond the model (a muscle compressed beyond its
+  /// buckling load); empty if there is nothing to say.
+  virtual std::string advice(const NodePoint& at) const {
+    static_cast<void>(at);
+    return {};
+  }
+
   /// Empty if the term can be evaluated at configuration q; otherwise why not, e.g. "muscle 'upper': stretch 0.12 below
   /// 0.2".
   virtual std::string inadmissible(const Eigen::VectorXd& q) const {

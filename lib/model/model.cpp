@@ -45,6 +45,14 @@ std::string Model::inadmissible(const Eigen::VectorXd& q) const {
   return {};
 }
 
+std::string Model::advice(const NodePoint& at) const {
+  for (const auto& term : terms) {
+    std::string sentence = term->advice(at);
+    if (!sentence.empty()) return sentence;
+  }
+  return {};
+}
+
 std::vector<std::string> Model::parts() const {
   std::vector<std::string> all;
   for (const auto& term : terms) {

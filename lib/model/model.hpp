@@ -38,6 +38,8 @@ struct Model {
   void tangent(const IntervalPoint& at, const TangentWeights& weights, math::BlockMatrix& K) const;
   IntervalWork work(const IntervalPoint& at) const;
   std::string inadmissible(const Eigen::VectorXd& q) const;
+  /// The first advice of a term, or empty.
+  std::string advice(const NodePoint& at) const;
 
   /// Components whose energies are recorded, over all terms in order.
   std::vector<std::string> parts() const;

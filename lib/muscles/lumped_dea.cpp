@@ -10,4 +10,13 @@ std::string LumpedDea::inadmissible(double z) const {
   return base::format("stretch {} below {}", base::number_text(stretch, 4), base::number_text(least_stretch));
 }
 
+std::string LumpedDea::advice(double z, double zd, double field) const {
+  const double push = -pull(z, zd, field);
+  const double limit = buckling_load(z, field);
+  if (push <= limit) return {};
+  return base::format(
+      "compressed with {} beyond its buckling load {} as a slender pinned rod; a lumped muscle stays straight",
+      base::number_text(push, 4), base::number_text(limit, 4));
+}
+
 }  // namespace muldi::muscles

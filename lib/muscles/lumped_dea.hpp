@@ -149,6 +149,8 @@ struct LumpedDea {
   }
 
   std::string inadmissible(double z) const;
+  /// Says so where the muscle is compressed beyond its buckling load: the lumped model stays straight (numerics 1.10).
+  std::string advice(double z, double zd, double field) const;
 
   /// dPi/dz at stretch L and nominal field E: the force with which the charged muscle pulls at rest.
   template <class S>

@@ -132,6 +132,17 @@ class TwoPointTerm final : public model::IntervalTerm {
     }
   }
 
+  std::string advice(const model::NodePoint& at) const override {
+    if constexpr (requires(const Element& element) { element.advice(1.0, 0.0, 0.0); }) {
+      for (const Component& component : components_) {
+        const auto x = component.state(at.q, at.v, at.u);
+        const std::string why = component.element.advice(x.length(), x.rate(), x.e[0]);
+        if (!why.empty()) return std::string(Element::noun) + " '" + component.name + "': " + why;
+      }
+    }
+    return {};
+  }
+
   std::string inadmissible(const Eigen::VectorXd& q) const override {
     for (const Component& component : components_) {
       const std::string why = component.element.inadmissible((component.a1.value(q) - component.a2.value(q)).norm());

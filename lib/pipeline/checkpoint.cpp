@@ -53,7 +53,12 @@ const results::Checkpoint& CheckpointWriter::write(const variational::State& sta
   return checkpoint_;
 }
 
-bool in_dynamics(const results::Checkpoint& checkpoint) { return checkpoint.integer("step").front() >= 0; }
+long steps_of(const results::Checkpoint& checkpoint) {
+  for (const auto& vector : checkpoint.integers) {
+    if (vector.name == "step" && !vector.values.empty()) return vector.values.front();
+  }
+  return -1;
+}
 
 variational::State state_of(const results::Checkpoint& checkpoint, const scene::Scene& scene,
                             const model::Manifold& manifold) {

@@ -21,8 +21,10 @@ class CheckpointWriter {
   results::Checkpoint checkpoint_;
 };
 
-/// True if the checkpoint was taken in the dynamics, not before.
-bool in_dynamics(const results::Checkpoint& checkpoint);
+/// Time steps made when the checkpoint was taken; -1 before the dynamics and in records without dynamics.
+long steps_of(const results::Checkpoint& checkpoint);
+/// True if the checkpoint was taken in the dynamics.
+inline bool in_dynamics(const results::Checkpoint& checkpoint) { return steps_of(checkpoint) >= 0; }
 
 /// The state at a checkpoint; InputError if it belongs to another system.
 variational::State state_of(const results::Checkpoint& checkpoint, const scene::Scene& scene,

@@ -7,27 +7,23 @@
 #include "pipeline/node_rows.hpp"
 #include "pipeline/provenance.hpp"
 #include "pipeline/run_statics.hpp"
-#include "scene/scene.hpp"
+#include "scene/read_scene.hpp"
 #include "variational/time_loop.hpp"
 
 namespace muldi::pipeline {
 namespace {
 
-std::string linear_of(const scene::Solver& solver) {
-  for (const auto& word : scene::words(solver.linear)) {
-    if (word.value == solver.linear) return std::string(word.word);
-  }
-  return "auto";
-}
+/// A midpoint step that turns a body by a has the momentum J sin(a) / dt: beyond 1 rad a step there is no solution.
+constexpr double longest_turn = 1.0;
 
-variational::LoopOptions loop_options(const scene::Scene& scene) {
+variational::LoopOptions loop_options(const scene::Scene& scene, const build::BuiltModel& built) {
   variational::LoopOptions options;
   options.dt = scene.dynamics->step;
   options.steps = scene.dynamics->n_steps();
   options.record_every = scene.record.every;
   options.step.tolerance = scene.solver.tolerance;
   options.step.max_iterations = scene.solver.max_iterations;
-  options.step.linear = linear_of(scene.solver);
+  options.step.linear = built.linear;
   return options;
 }
 
@@ -48,7 +44,7 @@ class DynamicsRun {
       : scene_(scene),
         built_(built),
         recorder_(recorder),
-        options_(loop_options(scene)),
+        options_(loop_options(scene, built)),
         rows_(recorder, scene, built, NodeRows::Kind::dynamics,
               static_cast<std::size_t>(options_.steps / options_.record_every + 2)),
         checkpoints_(*built.manifold, rows_.observed().size()) {
@@ -70,6 +66,7 @@ class DynamicsRun {
     variational::LoopCallbacks callbacks;
     callbacks.record = [&](const variational::NodeRecord& node) {
       rows_.write(node);
+      advise(node, context);
       if (context.progress) context.progress(node.step, options_.steps, node.t);
     };
     callbacks.checkpoint = [&](const variational::State& state, const variational::Ledger& ledger,
@@ -81,10 +78,43 @@ class DynamicsRun {
       if (context.warn) context.warn(warning_of(report, options_.step, t));
     };
     const variational::LoopResult result = loop.run(state_, ledger_, last_, callbacks);
+    if (result.status == variational::Status::no_convergence) return failure(result);
     return {.status = result.status, .sentence = result.sentence, .time = result.t};
   }
 
  private:
+  /// Newton's iteration ends nowhere where the motion is too fast for the step: that can be said.
+  Outcome failure(const variational::LoopResult& result) const {
+    const double turn = expected_turn();
+    if (turn <= longest_turn) return {.status = result.status, .sentence = result.sentence, .time = result.t};
+    return {.status = variational::Status::step_too_large,
+            .sentence = base::format("a body turns by {:.3g} rad in one step (limit {:g}): use a smaller step", turn,
+                                     longest_turn),
+            .time = result.t};
+  }
+
+  /// Largest turn of a body (rad) in the next step at the present speed.
+  double expected_turn() const {
+    const double part = 1.0 / 16.0;  // of the step: angles beyond a half turn look small
+    const model::Manifold& manifold = *built_.manifold;
+    Eigen::VectorXd x = state_.x;
+    Eigen::VectorXd q = state_.q;
+    manifold.retract(state_.x, part * state_.increment, x);
+    manifold.configuration(x, q);
+    return manifold.largest_rotation(state_.q, q) / part;
+  }
+
+  /// Says once what the terms find remarkable.
+  void advise(const variational::NodeRecord& node, const RunContext& context) {
+    if (advised_ || !context.warn) return;
+    const std::span<const double> x(node.state.x.data(), static_cast<std::size_t>(node.state.x.size()));
+    const std::string sentence = built_.model->advice({.x = x, .q = node.state.q, .v = node.values.v, .u = node.u});
+    if (sentence.empty()) return;
+    advised_ = true;
+    context.warn(base::format("at t = {:.6g}: {}", node.t, sentence));
+  }
+
+  bool advised_ = false;
   const scene::Scene& scene_;
   const build::BuiltModel& built_;
   results::Recorder& recorder_;
@@ -133,6 +163,8 @@ Outcome run(const scene::Scene& scene, const build::BuiltModel& built, results::
       }
     }
     recorder.start();
+    // The duration may have grown.
+    if (resumed) recorder.set_attribute("", "scene", scene::resolved_text(scene));
   }
   if (outcome.completed()) outcome = run_parts(statics, dynamics, resumed, context);
   set_wall_times(recorder, context.phases);

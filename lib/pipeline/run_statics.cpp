@@ -1,5 +1,7 @@
 #include "pipeline/run_statics.hpp"
 
+#include <limits>
+
 #include "pipeline/initial_state.hpp"
 
 namespace muldi::pipeline {
@@ -77,7 +79,7 @@ Outcome StaticsRun::run(RunContext& context) {
                       : result.end == End::interrupted         ? variational::Status::interrupted
                       : result.end == End::loss_of_equilibrium ? variational::Status::loss_of_equilibrium
                                                                : variational::Status::no_convergence;
-  return {.status = status, .sentence = result.sentence};
+  return {.status = status, .sentence = result.sentence, .time = std::numeric_limits<double>::quiet_NaN()};
 }
 
 }  // namespace muldi::pipeline

@@ -67,7 +67,7 @@ std::string summary(const scene::Scene& scene, const build::BuiltModel& built) {
       manifold.n_v() - manifold.n_c(), manifold.n_v(), manifold.n_c(), manifold.n_q());
   text += base::format("  assembled: gravity {}, damping {}, electric {}, finite elements no\n",
                        yes_no(assembled.gravity), yes_no(assembled.damping), yes_no(assembled.electric));
-  text += base::format("  linear solver {}\n", manifold.make_solver(*built.model->pattern, "auto")->name());
+  text += base::format("  linear solver {}\n", manifold.make_solver(*built.model->pattern, built.linear)->name());
   text +=
       base::format("  statics {}, dynamics {}\n", scene.statics ? base::format("{} steps", scene.statics->steps) : "no",
                    scene.dynamics ? base::format("{} steps", scene.dynamics->n_steps()) : "no");

@@ -135,7 +135,7 @@ struct Solver {
     using namespace base;
     constexpr auto optional = Need::optional;
     visit(Field{.key = "tolerance",
-                .doc = "relative residual at which Newton's iteration ends",
+                .doc = "largest Newton increment (rad, or fraction of the scene's size) whose result is accepted",
                 .range = {.min = 0.0, .max = 1.0, .min_open = true, .max_open = true},
                 .need = optional},
           self.tolerance);

@@ -222,11 +222,11 @@ SweepResult Sweep::arc_length(StaticState& state, const SweepCallbacks& callback
     }
     const double progress = (trial_load - options_.from) / range;
     if (progress > 1.0 || progress < 0.0) {
-      // The curve leaves the swept range: end on its border by a last solve at that load.
+      // The curve leaves the swept range: end on its border, by a corrector at fixed load.
       const double border = progress > 1.0 ? options_.to : options_.from;
-      controls_at(border);
-      report = solve_at(border, trial);
-      if (report.converged && report.stability != Stability::free) {
+      const Eigen::VectorXd along_load = Eigen::VectorXd::Unit(tangent.size(), tangent.size() - 1);
+      report = {};
+      if (corrector(trial, trial_load, along_load, (border - trial_load) / range, report)) {
         state = trial;
         load = border;
         record(callbacks, load, state, report);
