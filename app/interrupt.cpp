@@ -18,6 +18,8 @@ void ask(int signal) {
 }  // namespace
 
 void watch_interrupts() {
+  // A file size limit is a failed write like a full disk: not the end of the process.
+  std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGINT, ask);
   std::signal(SIGTERM, ask);
 }

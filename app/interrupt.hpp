@@ -3,7 +3,8 @@
 
 namespace muldi::app {
 
-/// Installs the handlers; a second signal ends the process at once.
+/// Installs the handlers; a second signal ends the process at once. From then on a file that may grow no further is an
+/// error of the write, not a signal.
 void watch_interrupts();
 bool interrupt_asked();
 

@@ -1,11 +1,13 @@
 /// The command line: options, verbs, exit codes. The only file that knows CLI11.
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <exception>
 
 #include "app/exit_code.hpp"
 #include "app/verbs.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/text.hpp"
 
 namespace {
 
@@ -25,20 +27,23 @@ struct CommandLine {
 void add_scene_options(CLI::App& verb, CommandLine& line) {
   verb.add_option("--set", line.run.overrides, "replace a scene entry: path.to[2].key=value (repeatable)")
       ->type_name("PATH=VALUE")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->allow_extra_args(false);
 }
 
 void add_run(CLI::App& program, CommandLine& line) {
   CLI::App* verb = program.add_subcommand("run", "run the statics and dynamics of a scene");
   verb->add_option("scene", line.run.scene, "scene file")->required()->type_name("SCENE.yaml");
-  verb->add_option("-o,--output", line.run.output, "result file; default <scene stem>.h5 here")->type_name("FILE");
+  CLI::Option* output = verb->add_option("-o,--output", line.run.output, "result file; default <scene stem>.h5 here");
+  output->type_name("FILE");
   add_scene_options(*verb, line);
   verb->add_option("--threads", line.run.threads, "number of threads; results do not depend on it")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
-  verb->add_flag("--force", line.run.force, "overwrite an existing result file");
-  verb->add_option("--resume", line.run.resume, "go on at the state recorded in this result file")->type_name("FILE");
+  CLI::Option* force = verb->add_flag("--force", line.run.force, "overwrite an existing result file");
+  verb->add_option("--resume", line.run.resume, "go on at the state recorded in this result file, in the same file")
+      ->type_name("FILE")
+      ->excludes(output)
+      ->excludes(force);
   verb->add_flag("--no-progress", line.no_progress, "no progress bar");
 }
 
@@ -52,9 +57,12 @@ void add_others(CLI::App& program, CommandLine& line) {
   compare->add_option("second", line.second, "result file")->required()->type_name("B.h5");
   compare->add_option("--rtol", line.compare.rtol, "tolerance relative to the largest value of a data set");
   compare->add_option("--atol", line.compare.atol, "absolute tolerance");
-  compare->add_option("--only", line.compare.only, "compare only data sets that match (repeatable)")->type_name("GLOB");
+  compare->add_option("--only", line.compare.only, "compare only data sets that match (repeatable)")
+      ->type_name("GLOB")
+      ->allow_extra_args(false);
   compare->add_option("--ignore", line.compare.ignore, "leave out data sets that match (repeatable)")
-      ->type_name("GLOB");
+      ->type_name("GLOB")
+      ->allow_extra_args(false);
 
   CLI::App* info = program.add_subcommand("info", "status, sizes, final values and statistics of a result file");
   info->add_option("file", line.first, "result file")->required()->type_name("OUT.h5");
@@ -73,34 +81,48 @@ int dispatch(const CLI::App& program, CommandLine& line) {
   return app::schema();
 }
 
+std::vector<std::string> names_of(const std::vector<const CLI::App*>& verbs) {
+  std::vector<std::string> names;
+  names.reserve(verbs.size());
+  for (const CLI::App* verb : verbs) names.push_back(verb->get_name());
+  return names;
+}
+
+/// One line in the form of all our errors; a misspelt word with the nearest known one.
+std::string usage_error(const CLI::App* program, const CLI::Error& error) {
+  const auto verbs = names_of(program->get_subcommands([](const CLI::App*) { return true; }));
+  const std::vector<CLI::App*> chosen = program->get_subcommands();
+  const CLI::App& asked = chosen.empty() ? *program : *chosen.front();
+  const std::vector<std::string> rest = program->remaining(true);
+  std::string text = error.what();
+  if (chosen.empty() && !rest.empty() && rest.front()[0] != '-') {
+    text = base::format("no verb '{}'", rest.front()) + base::did_you_mean(rest.front(), verbs);
+  } else if (!rest.empty()) {
+    std::vector<std::string> options;
+    for (const CLI::Option* option : asked.get_options()) {
+      for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+    }
+    const std::string_view near = base::nearest(rest.front(), options);
+    text = base::format("unexpected '{}'{}", rest.front(),
+                        near.empty() ? "" : base::format(" (did you mean '{}'?)", near));
+  } else if (chosen.empty()) {
+    text = "give a verb: " + base::joined(verbs, ", ");
+  }
+  return base::format("error: {}; see 'muldi-sim{} --help'\n", text, chosen.empty() ? "" : " " + asked.get_name());
+}
+
 base::Verbosity verbosity_of(const CommandLine& line) {
   if (line.quiet) return base::Verbosity::quiet;
   if (line.verbose >= 2) return base::Verbosity::debug;
   return line.verbose == 1 ? base::Verbosity::verbose : base::Verbosity::normal;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  CommandLine line;
-  for (int i = 0; i < argc; ++i) line.run.command_line += (i == 0 ? "" : " ") + std::string(argv[i]);
-  CLI::App program("muldi-sim: multibody systems moved by artificial muscles", "muldi-sim");
-  program.set_version_flag("--version", app::version_text);
-  program.require_subcommand(1);
-  program.fallthrough();
-  program.add_flag("--quiet", line.quiet, "warnings and errors only");
-  program.add_flag("-v", line.verbose, "say more; -vv everything");
-  add_run(program, line);
-  add_others(program, line);
+int guarded(const CLI::App& program, CommandLine& line) {
   try {
-    program.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    const int code = program.exit(error);
-    return code == 0 ? app::ExitCode::success : app::ExitCode::wrong_input;
-  }
-  base::set_verbosity(verbosity_of(line));
-  try {
-    return dispatch(program, line);
+    const int code = dispatch(program, line);
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+    base::log_error("cannot write the output");
+    return app::ExitCode::environment_failed;
   } catch (const base::InputError& error) {
     base::log_plain(error.what());
     return app::ExitCode::wrong_input;
@@ -114,4 +136,28 @@ int main(int argc, char** argv) {
     base::log_error(std::string("internal error, please report it: ") + error.what());
     return 70;  // EX_SOFTWARE: a bug, none of the documented codes
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CommandLine line;
+  for (int i = 0; i < argc; ++i) line.run.command_line += (i == 0 ? "" : " ") + std::string(argv[i]);
+  CLI::App program("muldi-sim: multibody systems moved by artificial muscles", "muldi-sim");
+  program.set_version_flag("--version", app::version_text);
+  program.failure_message(usage_error);
+  program.fallthrough();
+  program.add_flag("--quiet", line.quiet, "warnings and errors only");
+  program.add_flag("-v", line.verbose, "say more; -vv everything");
+  add_run(program, line);
+  add_others(program, line);
+  try {
+    program.parse(argc, argv);
+    if (program.get_subcommands().empty()) throw CLI::RequiredError("a verb");
+  } catch (const CLI::ParseError& error) {
+    const int code = program.exit(error);
+    return code == 0 ? app::ExitCode::success : app::ExitCode::wrong_input;
+  }
+  base::set_verbosity(verbosity_of(line));
+  return guarded(program, line);
 }

@@ -1,6 +1,8 @@
+#include <cmath>
 #include <filesystem>
 #include <optional>
 
+#include "app/earlier_record.hpp"
 #include "app/exit_code.hpp"
 #include "app/interrupt.hpp"
 #include "app/progress_bar.hpp"
@@ -8,8 +10,8 @@
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "pipeline/run.hpp"
+#include "pipeline/summary.hpp"
 #include "results/hdf5_recorder.hpp"
-#include "results/result_file.hpp"
 #include "scene/read_scene.hpp"
 
 namespace muldi::app {
@@ -32,29 +34,22 @@ results::Output output_of(const RunArguments& arguments) {
   return output;
 }
 
-/// The checkpoint of the record that the initial state comes from.
-std::optional<results::Checkpoint> earlier_state(const scene::Scene& scene, const std::string& scene_path) {
-  const scene::InitialFrom& from = scene.initial.from;
-  if (from.kind != scene::InitialFrom::Kind::record) return {};
-  std::filesystem::path path(from.file);
-  if (path.is_relative()) path = std::filesystem::path(scene_path).parent_path() / path;
-  const auto stored = results::ResultFile(path.string()).checkpoint();
-  if (!stored) {
-    throw base::InputError({scene::error_at(from.origin, "the record holds no state of a dynamic run to start from")});
-  }
-  return stored->checkpoint;
-}
-
 void report(const pipeline::Outcome& outcome, const std::string& path) {
   const std::string status = variational::name_of(outcome.status);
+  const std::string at = std::isnan(outcome.time) ? "" : base::format(" at t = {:.6g}", outcome.time);
   if (outcome.completed()) {
     base::log_info(base::format("completed: {}", path));
   } else if (outcome.status == variational::Status::interrupted) {
-    base::log_warning(base::format("interrupted at t = {:.6g}; go on with --resume {}", outcome.time, path));
+    base::log_warning(base::format("interrupted{}; go on with --resume {}", at, path));
   } else {
-    base::log_error(base::format("{} at t = {:.6g}: {} (what was computed is in {})", status, outcome.time,
-                                 outcome.sentence, path));
+    base::log_error(base::format("{}{}: {} (what was computed is in {})", status, at, outcome.sentence, path));
   }
+}
+
+void report_phases(const base::Phases& phases) {
+  std::vector<std::string> parts;
+  for (const base::Phase& phase : phases.all()) parts.push_back(base::format("{} {:.3g} s", phase.name, phase.seconds));
+  base::log_verbose("wall time: " + base::joined(parts, ", "));
 }
 
 }  // namespace
@@ -78,10 +73,19 @@ int run(const RunArguments& arguments) {
     built = build::build_model(*scene);
     print(built->notes);
   }
-  const std::optional<results::Checkpoint> earlier = earlier_state(*scene, arguments.scene);
+  if (base::verbosity() >= base::Verbosity::verbose) {
+    base::log_verbose(base::trimmed(pipeline::summary(*scene, *built)));
+  }
+  if (base::verbosity() >= base::Verbosity::debug) base::log_debug(base::trimmed(scene::resolved_text(*scene)));
   const results::Output output = output_of(arguments);
-  results::Hdf5Recorder recorder(output);
+  if (output.mode == results::Output::Mode::resume && is_complete(*scene, output.path)) {
+    base::log_info(base::format("'{}' is complete already: nothing to do{}", output.path,
+                                scene->dynamics ? " (a longer dynamics.duration would go on)" : ""));
+    return ExitCode::success;
+  }
+  const std::optional<results::Checkpoint> earlier = earlier_state(*scene);
   watch_interrupts();
+  results::Hdf5Recorder recorder(output);
   ProgressBar bar(arguments.progress && base::verbosity() != base::Verbosity::quiet, scene->units.time());
   context.interrupted = interrupt_asked;
   context.progress = [&](long done, long all, double t) { bar.update(done, all, t); };
@@ -92,6 +96,7 @@ int run(const RunArguments& arguments) {
   const pipeline::Outcome outcome = pipeline::run(*scene, *built, recorder, context, earlier);
   bar.clear();
   report(outcome, output.path);
+  report_phases(context.phases);
   return exit_code(outcome.status);
 }
 

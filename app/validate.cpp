@@ -1,9 +1,11 @@
 #include <cstdio>
 
+#include "app/earlier_record.hpp"
 #include "app/exit_code.hpp"
 #include "app/verbs.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "pipeline/checkpoint.hpp"
 #include "pipeline/initial_state.hpp"
 #include "pipeline/summary.hpp"
 #include "scene/read_scene.hpp"
@@ -19,6 +21,7 @@ int validate(const std::vector<std::string>& scenes, const std::vector<std::stri
       for (const auto* list : {&scene.warnings, &built.notes}) {
         for (const base::Diagnostic& diagnostic : *list) base::log_plain(base::to_string(diagnostic));
       }
+      if (const auto earlier = earlier_state(scene)) pipeline::state_of(*earlier, scene, *built.manifold);
       pipeline::initial_rates(scene, built, pipeline::initial_coordinates(scene, built));
       std::fputs((path + ": " + pipeline::summary(scene, built)).c_str(), stdout);
     } catch (const base::InputError& error) {

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "base/error.hpp"
 #include "build/build_terms.hpp"
 #include "build/place_bodies.hpp"
 #include "muscles/muscle_observables.hpp"
@@ -80,6 +81,7 @@ model::LinearPoint point_of(const scene::Scene& scene, const scene::Attachment& 
 void add_muscles(TermContext& context) {
   std::vector<muscles::TwoPointComponent<muscles::LumpedDea>> attached;
   std::vector<muscles::FreeActuator> free;
+  std::vector<base::Diagnostic> errors;
   const int n_bodies = static_cast<int>(context.scene.bodies.size());
   for (const auto& entry : context.scene.muscles) {
     const scene::Muscle& muscle = entry.value;
@@ -92,6 +94,10 @@ void add_muscles(TermContext& context) {
       add_observables(context, muscles::muscle_observables(free.back(), muscle.layer_thickness));
     } else {
       const double length = muscle.rest_length.value_or(distance(context, *muscle.from, *muscle.to));
+      if (length <= 0.0) {
+        errors.push_back(scene::error_at(entry.origin, "its ends coincide in the scene pose; give its rest_length"));
+        continue;
+      }
       attached.push_back({entry.name,
                           element_of(context.scene, muscle, length),
                           point_of(context.scene, *muscle.from),
@@ -104,6 +110,7 @@ void add_muscles(TermContext& context) {
     context.built.assembled.damping |= element.viscosity > 0.0;
     context.built.assembled.electric |= muscle.control.has_value();
   }
+  if (!errors.empty()) throw base::InputError(std::move(errors));
   context.built.assembled.muscles = attached.size();
   context.built.assembled.free_actuators = free.size();
   auto& terms = context.built.model->terms;

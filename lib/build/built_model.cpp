@@ -75,6 +75,23 @@ void make_manifold(const scene::Scene& scene, const std::vector<multibody::Pose>
   built.model->manifold = std::move(manifold);
 }
 
+/// The word of the wanted linear solver.
+std::string linear_solver(const scene::Scene& scene, const BuiltModel& built) {
+  std::string linear = "auto";
+  if (scene.solver.linear == scene::LinearSolver::automatic) return linear;
+  for (const auto& word : scene::words(scene.solver.linear)) {
+    if (word.value == scene.solver.linear) linear = word.word;
+  }
+  try {
+    built.manifold->make_solver(*built.model->pattern, linear);
+  } catch (const base::InputError& error) {
+    std::vector<base::Diagnostic> errors = error.diagnostics();
+    for (base::Diagnostic& found : errors) found.place = scene.origin.place;
+    throw base::InputError(std::move(errors));
+  }
+  return linear;
+}
+
 }  // namespace
 
 const multibody::TreeLink* BuiltModel::link_of_joint(std::size_t scene_index) const {
@@ -111,6 +128,7 @@ BuiltModel build_model(const scene::Scene& scene) {
   add_loads(context);
   built.model->controls = controls.take();
   built.model->bind();
+  built.linear = linear_solver(scene, built);
   return built;
 }
 

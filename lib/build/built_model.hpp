@@ -31,6 +31,7 @@ struct BuiltModel {
   std::unique_ptr<multibody::JointRecords> joint_records;  ///< referred to by observables
   std::vector<base::Diagnostic> notes;                     ///< small gaps that were closed, and the like
   std::size_t n_named_controls = 0;  ///< the scene's controls come first; then functions of drives
+  std::string linear = "auto";       ///< linear solver that the scene asks for; it can solve this system
   Assembled assembled;
 
   /// The joint of the kinematic tree with this index in the scene.
@@ -40,7 +41,8 @@ struct BuiltModel {
 };
 
 /// Builds everything that the scene holds and nothing else. InputError with all that is wrong (joints that do not
-/// close, axes that are not perpendicular, loops that cannot be placed), located in the scene.
+/// close, axes that are not perpendicular, loops that cannot be placed, a linear solver that does not fit), located in
+/// the scene.
 BuiltModel build_model(const scene::Scene& scene);
 
 }  // namespace muldi::build

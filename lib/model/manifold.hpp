@@ -87,6 +87,9 @@ class Manifold {
   /// Smallest over largest pivot of the independent loop rows at this frame (1 without loops): 0 means a change of
   /// rank.
   virtual double loop_regularity(const Frame& frame) const = 0;
+  /// True if the independent loop rows lose rank on the way between two frames: det(B_from B_to^T) < 0, which is the
+  /// sum of the products of their minors (Cauchy and Binet).
+  virtual bool loops_cross(const Frame& from, const Frame& to) const = 0;
   /// The largest angle by which a body turns between two configurations (step-size limit, numerics 1.8).
   virtual double largest_rotation(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to) const = 0;
 };

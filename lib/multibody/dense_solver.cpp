@@ -1,5 +1,6 @@
-/// Joint-space Newton matrix with the loop rows, one dense LU.
+/// Joint-space Newton matrix with the loop rows, one dense LU of the matrix scaled to entries of size 1.
 #include <Eigen/LU>
+#include <cmath>
 
 #include "base/error.hpp"
 #include "multibody/projected_solvers.hpp"
@@ -7,6 +8,9 @@
 
 namespace muldi::multibody {
 namespace {
+
+/// Pivots of the scaled matrix below this are round-off: the motion has neither inertia nor stiffness.
+constexpr double pivot_tolerance = 1e-14;
 
 class DenseSolver final : public model::ProjectedSolver {
  public:
@@ -22,10 +26,13 @@ class DenseSolver final : public model::ProjectedSolver {
         df_(manifold.n_q()),
         column_(manifold.n_v()),
         rhs_(n_),
-        solution_(n_) {}
+        solution_(n_),
+        scale_(Eigen::VectorXd::Ones(n_)),
+        weights_(2, manifold.tree().n_bodies + manifold.n_plain()) {}
 
   bool factorise(const model::Frame& left, const model::Frame& right, const math::BlockMatrix& K) override {
     const int n_v = manifold_.n_v();
+    weigh(K);
     for (int k = 0; k < n_v; ++k) {
       unit_[k] = 1.0;
       manifold_.lift(right, unit_, dq_);
@@ -33,6 +40,8 @@ class DenseSolver final : public model::ProjectedSolver {
       K.multiply(dq_, df_);
       manifold_.project(left, df_, column_);
       A_.col(k).head(n_v) = column_;
+      const double size = size_of(dq_);
+      scale_[k] = size > 0.0 ? 1.0 / std::sqrt(size) : 1.0;
     }
     if (manifold_.n_c() > 0) {
       manifold_.project_constraints(left, left_rows_);
@@ -42,18 +51,25 @@ class DenseSolver final : public model::ProjectedSolver {
       A_.bottomRightCorner(manifold_.n_c(), manifold_.n_c()).setZero();
     }
     if (n_ == 0) return true;
+    for (int i = n_v; i < n_; ++i) {
+      const double row = A_.row(i).head(n_v).transpose().cwiseProduct(scale_.head(n_v)).lpNorm<Eigen::Infinity>();
+      scale_[i] = row > 0.0 ? 1.0 / row : 1.0;
+    }
+    for (int k = 0; k < n_; ++k) A_.col(k) = scale_[k] * A_.col(k).cwiseProduct(scale_);
     lu_.compute(A_);
     const auto pivots = lu_.matrixLU().diagonal().cwiseAbs();
-    return std::isfinite(pivots.maxCoeff()) && pivots.minCoeff() > 0.0;
+    return std::isfinite(pivots.maxCoeff()) && pivots.minCoeff() > pivot_tolerance;
   }
 
   void solve(const Eigen::VectorXd& r, const Eigen::VectorXd& g, Eigen::VectorXd& w, Eigen::VectorXd& lambda) override {
     if (n_ == 0) return;
     rhs_.head(manifold_.n_v()) = r;
     rhs_.tail(manifold_.n_c()) = g;
+    rhs_.array() *= scale_.array();
     solution_.noalias() = lu_.permutationP() * rhs_;
     lu_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(solution_);
     lu_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(solution_);
+    solution_.array() *= scale_.array();
     w = solution_.head(manifold_.n_v());
     lambda = solution_.tail(manifold_.n_c());
   }
@@ -61,6 +77,33 @@ class DenseSolver final : public model::ProjectedSolver {
   std::string name() const override { return "dense"; }
 
  private:
+  /// The diagonal of K: of positions and of directors of each body, of single unknowns.
+  void weigh(const math::BlockMatrix& K) {
+    const math::BlockPattern& pattern = K.pattern();
+    for (int node = 0; node < pattern.n_nodes(); ++node) {
+      const math::BlockSlot slot = pattern.slot(node, node);
+      weights_.col(node).setZero();
+      for (int k = 0; k < pattern.size(node); ++k) {
+        weights_(k < 3 ? 0 : 1, node) += std::abs(K.data(slot)[k * slot.stride + k]);
+      }
+    }
+  }
+
+  /// What dq^T K dq would be if no terms cancelled: turns weigh the inertia of the body about all axes, so that a turn
+  /// about an axis without inertia is seen as such.
+  double size_of(const Eigen::VectorXd& dq) const {
+    const int n_bodies = manifold_.tree().n_bodies;
+    double size = 0.0;
+    for (int body = 0; body < n_bodies; ++body) {
+      size += weights_(0, body) * dq.segment<3>(12 * body).squaredNorm();
+      size += weights_(1, body) * 0.5 * dq.segment<9>(12 * body + 3).squaredNorm();
+    }
+    for (int k = 0; k < manifold_.n_plain(); ++k) {
+      size += weights_(0, n_bodies + k) * dq[12 * n_bodies + k] * dq[12 * n_bodies + k];
+    }
+    return size;
+  }
+
   const TreeManifold& manifold_;
   int n_;
   Eigen::MatrixXd A_;
@@ -73,6 +116,8 @@ class DenseSolver final : public model::ProjectedSolver {
   Eigen::VectorXd column_;
   Eigen::VectorXd rhs_;
   Eigen::VectorXd solution_;
+  Eigen::VectorXd scale_;     // of rows and columns
+  Eigen::Matrix2Xd weights_;  // a column a node
 };
 
 /// Up to this size the dense matrix is the faster one where the tree solver does not apply.

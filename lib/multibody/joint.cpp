@@ -162,9 +162,9 @@ std::vector<model::Bilinear> constraint_rows(const Joint& joint, double length) 
   for (const Constraint& constraint : joint.pattern.constraints) {
     switch (constraint.kind) {
       case Constraint::Kind::coincident:
-        for (int k = 0; k < 3; ++k) {
-          rows.push_back({.a = model::LinearPoint::constant(Eigen::Vector3d::Unit(k)), .b = p, .scale = 1.0 / length});
-        }
+        // Along the joint's axes, not the world's: of a planar loop that is turned in space the same rows are
+        // redundant.
+        for (int k = 0; k < 3; ++k) rows.push_back({.a = e_a(k), .b = p, .scale = 1.0 / length});
         break;
       case Constraint::Kind::no_slide:
         rows.push_back({.a = e_a(constraint.a), .b = p, .scale = 1.0 / length});

@@ -13,7 +13,7 @@ namespace muldi::multibody {
 /// One or three scalar constraints.
 struct Constraint {
   enum class Kind {
-    coincident,     ///< p = 0, three rows in world axes
+    coincident,     ///< p = 0, three rows e_kA . p = 0
     no_slide,       ///< e_a^A . p = 0
     perpendicular,  ///< e_a^A . e_b^B = 0
   };

@@ -131,9 +131,11 @@ void joint_forces_of(const KinematicTree& tree, const TreeFrame& frame, const Tw
   }
 }
 
-void projection_rate(const KinematicTree& tree, const TreeFrame& frame, const Twists& twists, const Eigen::VectorXd& f,
-                     const Twists& accumulated, Eigen::VectorXd& rate) {
-  Twists& change = frame.twists;  // rate of the accumulated wrenches
+namespace {
+
+/// Rates of the plain wrenches T_int^T f, f frozen: the directors turn.
+void wrench_rates(const KinematicTree& tree, const TreeFrame& frame, const Twists& twists, const Eigen::VectorXd& f,
+                  Twists& change) {
   for (std::size_t l = 0; l < tree.links.size(); ++l) {
     const Vector3d omega = twists.col(static_cast<Eigen::Index>(l)).tail<3>();
     const int first = 12 * tree.links[l].body;
@@ -143,42 +145,73 @@ void projection_rate(const KinematicTree& tree, const TreeFrame& frame, const Tw
     }
     change.col(static_cast<Eigen::Index>(l)) << Vector3d::Zero(), moment;
   }
+}
+
+/// A link and its parent in motion.
+struct MovingLink {
+  const TreeLink& link;
+  const LinkFrame& at;
+  Pose parent;
+  Vector6 twist;
+  Vector6 parent_twist;
+
+  /// Rate of LinkFrame::lever: the pivot rides on body B, the lever starts at the link's own body.
+  Vector3d lever_rate() const {
+    const Vector6& twist_b = link.reversed ? parent_twist : twist;
+    const Vector3d& b_position = link.reversed ? parent.position : at.pose.position;
+    const Vector3d pivot = at.pose.position + at.lever;
+    return twist_b.head<3>() + twist_b.tail<3>().cross(pivot - b_position) - twist.head<3>();
+  }
+};
+
+/// Rate of S^T W of one link, W and its rate given.
+void joint_force_rate(const Joint& joint, const MovingLink& moving, const Vector6& wrench, const Vector6& wrench_rate,
+                      Eigen::VectorXd& rate) {
+  const TreeLink& link = moving.link;
+  const LinkFrame& at = moving.at;
+  const Pose& a = link.reversed ? at.pose : moving.parent;
+  const Pose& b = link.reversed ? moving.parent : at.pose;
+  const Vector3d lever_rate = moving.lever_rate();
+  const double sign = link.reversed ? -1.0 : 1.0;
+  for_each_rate(joint, a.orientation * joint.triad_a, b.orientation * joint.triad_b,
+                [&](int k, bool slides, const Vector3d& axis, int carrier) {
+                  const Vector3d omega = (carrier == link.body ? moving.twist : moving.parent_twist).tail<3>();
+                  const Vector3d axis_rate = omega.cross(axis);
+                  double value = at.columns.col(k).dot(wrench_rate);
+                  if (slides) {
+                    value += sign * axis_rate.dot(wrench.head<3>());
+                  } else {
+                    value += sign * (lever_rate.cross(axis) + at.lever.cross(axis_rate)).dot(wrench.head<3>());
+                    value += sign * axis_rate.dot(wrench.tail<3>());
+                  }
+                  rate[link.first_rate + k] = value;
+                });
+}
+
+}  // namespace
+
+void projection_rate(const KinematicTree& tree, const TreeFrame& frame, const Twists& twists, const Eigen::VectorXd& f,
+                     const Twists& accumulated, Eigen::VectorXd& rate) {
+  Twists& change = frame.twists;  // rate of the accumulated wrenches
+  wrench_rates(tree, frame, twists, f, change);
   for (std::size_t l = tree.links.size(); l-- > 0;) {
     const TreeLink& link = tree.links[l];
     const auto column = static_cast<Eigen::Index>(l);
-    const LinkFrame& at = frame.links[l];
-    const Joint& joint = tree.joint(link);
+    MovingLink moving{link, frame.links[l], {}, twists.col(column), Vector6::Zero()};
     const LinkFrame* parent = parent_frame(tree, frame, link);
-    const Eigen::Matrix3d parent_axes = parent != nullptr ? parent->pose.orientation : Eigen::Matrix3d::Identity();
-    Vector6 parent_twist = Vector6::Zero();
-    if (parent != nullptr) parent_twist = twists.col(tree.link_of_body[static_cast<std::size_t>(link.parent)]);
-    const Vector6 twist = twists.col(column);
-    const Vector6& twist_b = link.reversed ? parent_twist : twist;
-    const Eigen::Matrix3d e_a = (link.reversed ? at.pose.orientation : parent_axes) * joint.triad_a;
-    const Eigen::Matrix3d e_b = (link.reversed ? parent_axes : at.pose.orientation) * joint.triad_b;
-    const Vector3d b_position = link.reversed ? Vector3d(at.pose.position - at.arm) : at.pose.position;
-    const Vector3d pivot = at.pose.position + at.lever;
-    const Vector3d lever_rate = twist_b.head<3>() + twist_b.tail<3>().cross(pivot - b_position) - twist.head<3>();
-    const double sign = link.reversed ? -1.0 : 1.0;
+    const int parent_column = parent == nullptr ? -1 : tree.link_of_body[static_cast<std::size_t>(link.parent)];
+    if (parent != nullptr) {
+      moving.parent = parent->pose;
+      moving.parent_twist = twists.col(parent_column);
+    }
     const Vector6 wrench = accumulated.col(column);
     const Vector6 wrench_rate = change.col(column);
-    for_each_rate(joint, e_a, e_b, [&](int k, bool slides, const Vector3d& axis, int carrier) {
-      const Vector3d omega = (carrier == link.body ? twist : parent_twist).tail<3>();
-      const Vector3d axis_rate = omega.cross(axis);
-      double value = at.columns.col(k).dot(wrench_rate);
-      if (slides) {
-        value += sign * axis_rate.dot(wrench.head<3>());
-      } else {
-        value += sign * (lever_rate.cross(axis) + at.lever.cross(axis_rate)).dot(wrench.head<3>());
-        value += sign * axis_rate.dot(wrench.tail<3>());
-      }
-      rate[link.first_rate + k] = value;
-    });
+    joint_force_rate(tree.joint(link), moving, wrench, wrench_rate, rate);
     if (parent == nullptr) continue;
-    auto up = change.col(tree.link_of_body[static_cast<std::size_t>(link.parent)]);
+    auto up = change.col(parent_column);
     up += wrench_rate;
-    up.tail<3>() += at.arm.cross(wrench_rate.head<3>());
-    up.tail<3>() += (twist.head<3>() - parent_twist.head<3>()).cross(wrench.head<3>());
+    up.tail<3>() += moving.at.arm.cross(wrench_rate.head<3>());
+    up.tail<3>() += (moving.twist.head<3>() - moving.parent_twist.head<3>()).cross(wrench.head<3>());
   }
 }
 

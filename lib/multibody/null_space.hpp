@@ -2,6 +2,7 @@
 /// The null-space matrix of a whole tree in factored form, T = T_int T_ext (numerics, 1.6, 1.7): never a matrix
 /// product, but the recursion t_B = T_a t_A + T_b w over the links, with twists t = (v, omega) of the bodies.
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct TreeFrame : model::Frame {
   mutable Eigen::VectorXd row;       ///< (n_v)
   mutable Eigen::MatrixXd rows;      ///< (n_c, n_v)
   mutable Eigen::ColPivHouseholderQR<Eigen::MatrixXd> loop_pivots;  ///< of rows^T
+  mutable Eigen::PartialPivLU<Eigen::MatrixXd> loop_product;        ///< of the rows at two frames
 };
 
 /// Recomputes the frame from the poses in q (directors at 12 body + 3).

@@ -12,6 +12,9 @@ namespace {
 
 /// Rows of B below this fraction of the largest pivot depend on the others (numerics, 1.9).
 constexpr double rank_tolerance = 1e-10;
+/// Pivots are angles or sizes of the scene. A largest one below this is round-off: the loop joins what the tree holds
+/// together already.
+constexpr double smallest_pivot = 1e-4;
 
 /// Director orthonormality of one body (numerics, 1.6).
 void add_director_rows(int body, std::vector<model::Bilinear>& rows) {
@@ -63,10 +66,11 @@ void TreeManifold::select_independent_rows() {
   update(reference_, q, *frame);
   Eigen::MatrixXd B(n_c(), n_v());
   project_constraints(*frame, B);
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(B.transpose());
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr((B * rate_scale().asDiagonal()).transpose());
   const Eigen::Index n = std::min(B.rows(), B.cols());
+  const double largest = n > 0 ? std::max(std::abs(qr.matrixQR()(0, 0)), smallest_pivot) : 0.0;
   Eigen::Index rank = 0;
-  while (rank < n && std::abs(qr.matrixQR()(rank, rank)) > rank_tolerance * std::abs(qr.matrixQR()(0, 0))) ++rank;
+  while (rank < n && std::abs(qr.matrixQR()(rank, rank)) > rank_tolerance * largest) ++rank;
   std::vector<int> kept(qr.colsPermutation().indices().data(), qr.colsPermutation().indices().data() + rank);
   std::sort(kept.begin(), kept.end());
   std::vector<model::Bilinear> rows;
@@ -139,6 +143,7 @@ std::unique_ptr<model::Frame> TreeManifold::make_frame() const {
     frame->row = Eigen::VectorXd::Zero(n_v());
     frame->rows = Eigen::MatrixXd::Zero(n_c(), n_v());
     frame->loop_pivots = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(n_v(), n_c());
+    frame->loop_product = Eigen::PartialPivLU<Eigen::MatrixXd>(n_c());
   }
   return frame;
 }
@@ -253,6 +258,16 @@ double TreeManifold::loop_regularity(const model::Frame& frame) const {
   at.loop_pivots.compute(at.rows.transpose());
   const auto& pivots = at.loop_pivots.matrixQR();
   return std::abs(pivots(n_c() - 1, n_c() - 1)) / std::abs(pivots(0, 0));
+}
+
+bool TreeManifold::loops_cross(const model::Frame& from, const model::Frame& to) const {
+  if (rows_.empty()) return false;
+  const TreeFrame& begin = tree_frame(from);
+  const TreeFrame& end = tree_frame(to);
+  project_constraints(from, begin.rows);
+  project_constraints(to, end.rows);
+  begin.loop_product.compute(begin.rows.lazyProduct(end.rows.transpose()));
+  return begin.loop_product.determinant() < 0.0;
 }
 
 double TreeManifold::largest_rotation(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to) const {

@@ -11,7 +11,7 @@ class TreeManifold final : public model::Manifold {
  public:
   /// `poses` (n_bodies): the scene pose, in which tree joints have coordinate zero. `plain`: reference values of scalar
   /// unknowns; they are the nodes after the bodies. `length`: size of the scene.
-  /// InputError if a loop-closing joint does not close in the scene pose.
+  /// The loops must close in the scene pose: the builder has checked it.
   TreeManifold(KinematicTree tree, const std::vector<Pose>& poses, std::vector<double> plain, double length);
 
   int n_x() const override { return tree_.n_coordinates + n_plain(); }
@@ -39,6 +39,7 @@ class TreeManifold final : public model::Manifold {
   std::unique_ptr<model::ProjectedSolver> make_solver(const math::BlockPattern& pattern,
                                                       const std::string& kind) const override;
   double loop_regularity(const model::Frame& frame) const override;
+  bool loops_cross(const model::Frame& from, const model::Frame& to) const override;
   double largest_rotation(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to) const override;
 
   const KinematicTree& tree() const { return tree_; }

@@ -5,6 +5,7 @@
 ///     D = S_l^T A_B S_r,  y = D^-1 (r_B - S_l^T w_B - U t_A),  U = S_l^T (A_B X_r + C_B),
 /// and W_B, carried to A by X_l^T, is again affine in t_A. (X, S: T_a, T_b at the left or right frame.)
 #include <Eigen/LU>
+#include <cmath>
 
 #include "multibody/projected_solvers.hpp"
 #include "multibody/tree_manifold.hpp"
@@ -18,8 +19,9 @@ using Rows = Eigen::Matrix<double, Eigen::Dynamic, 6, 0, 6, 6>;     // rates x 6
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
 using Rates = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
 
-/// Pivots of D below this fraction of its largest entry mean a singular system.
-constexpr double pivot_tolerance = 1e-13;
+/// Pivots of D below this fraction of the terms that sum up to them are round-off: the motion has neither inertia nor
+/// stiffness.
+constexpr double pivot_tolerance = 1e-14;
 
 struct Node {
   math::BlockSlot diagonal;
@@ -99,7 +101,9 @@ class TreeSolver final : public model::ProjectedSolver {
     for (std::size_t l = nodes_.size(); l-- > 0;) {
       Node& node = nodes_[l];
       const TreeLink& link = tree_.links[l];
-      node.y = node.D_inverse * (r.segment(link.first_rate, node.U.rows()) - node.S_l.transpose() * node.w);
+      Rates rest = r.segment(link.first_rate, node.U.rows());
+      rest.noalias() -= node.S_l.transpose() * node.w;
+      node.y.noalias() = node.D_inverse * rest;
       if (link.parent == ground) continue;
       Vector6 w = node.w + node.V * node.y;
       carry_wrench(node.arm_l, w);
@@ -140,7 +144,8 @@ class TreeSolver final : public model::ProjectedSolver {
     node.arm_r = right.links[l].arm;
     node.V.noalias() = node.A * node.S_r;
     const Square D = node.S_l.transpose() * node.V;
-    if (!invert(D, node.D_inverse)) return false;
+    const Columns terms = node.A.cwiseAbs() * node.S_r.cwiseAbs();
+    if (!invert(D, node.S_l.cwiseAbs().cwiseProduct(terms).colwise().sum().transpose(), node.D_inverse)) return false;
     node.U.resize(n, 6);
     if (link.parent == ground) {
       node.U.setZero();
@@ -166,20 +171,19 @@ class TreeSolver final : public model::ProjectedSolver {
     return true;
   }
 
-  static bool invert(const Square& D, Square& inverse) {
-    if (D.rows() == 0) {
-      inverse.resize(0, 0);
-      return true;
-    }
+  /// `size`: sums of the magnitudes of the terms on the diagonal of D.
+  static bool invert(const Square& D, const Rates& size, Square& inverse) {
+    inverse.resize(D.rows(), D.cols());
+    if (D.rows() == 0) return true;
     if (D.rows() == 1) {
-      inverse.resize(1, 1);
       inverse(0, 0) = 1.0 / D(0, 0);
-      return D(0, 0) != 0.0 && std::isfinite(inverse(0, 0));
+      return std::abs(D(0, 0)) > pivot_tolerance * size[0] && std::isfinite(inverse(0, 0));
     }
-    const Eigen::PartialPivLU<Square> lu(D);
-    if (!(lu.matrixLU().diagonal().cwiseAbs().minCoeff() > pivot_tolerance * D.cwiseAbs().maxCoeff() * 1e-3))
-      return false;
-    inverse = lu.inverse();
+    const Rates scale = size.cwiseSqrt().cwiseInverse();
+    const Square scaled = scale.asDiagonal() * D * scale.asDiagonal();
+    const Eigen::PartialPivLU<Square> lu(scaled);
+    if (!(lu.matrixLU().diagonal().cwiseAbs().minCoeff() > pivot_tolerance)) return false;
+    inverse = scale.asDiagonal() * lu.inverse() * scale.asDiagonal();
     return true;
   }
 

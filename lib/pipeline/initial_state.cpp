@@ -236,6 +236,11 @@ Eigen::VectorXd initial_coordinates(const scene::Scene& scene, const build::Buil
     for (int k = 0; k < joint.pattern.n_rates(); ++k) held[static_cast<std::size_t>(link->first_rate + k)] = true;
   }
   close_loops(scene, built, held, x);
+  Eigen::VectorXd q(built.manifold->n_q());
+  built.manifold->configuration(x, q);
+  if (const std::string sentence = built.model->inadmissible(q); !sentence.empty()) {
+    throw base::InputError({scene::error_at(scene.origin, "the initial pose is impossible: " + sentence)});
+  }
   return x;
 }
 

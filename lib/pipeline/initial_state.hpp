@@ -10,7 +10,7 @@
 namespace muldi::pipeline {
 
 /// Coordinates with the given joint positions and closed loops (least-norm correction of the others); InputError if the
-/// positions contradict the loops.
+/// positions contradict the loops, or for a pose that no element can have (ends that coincide).
 Eigen::VectorXd initial_coordinates(const scene::Scene& scene, const build::BuiltModel& built);
 
 /// The static equilibrium under the controls at t = 0, from `x`; the outcome is not completed if there is none.

@@ -24,6 +24,10 @@ hdf5::RowStorage storage_of(std::size_t width, std::size_t block_rows) {
 
 /// Makes sure that the path can be written; a file that is there is an error unless it may be overwritten.
 void claim(const Output& output) {
+  std::error_code none;
+  if (std::filesystem::exists(output.path, none) && !std::filesystem::is_regular_file(output.path, none)) {
+    throw base::EnvironmentError("cannot write '" + output.path + "': not a regular file");
+  }
   const bool overwrite = output.mode == Output::Mode::overwrite;
   const int descriptor = ::open(output.path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | (overwrite ? 0 : O_EXCL), 0666);
   const int error = errno;
@@ -32,9 +36,6 @@ void claim(const Output& output) {
     throw base::InputError("'" + output.path + "' exists (--force overwrites it, --output names another file)");
   }
   if (descriptor < 0) throw base::EnvironmentError("cannot write '" + output.path + "': " + std::strerror(error));
-  if (!std::filesystem::is_regular_file(output.path)) {
-    throw base::EnvironmentError("cannot write '" + output.path + "': not a regular file");
-  }
 }
 
 void describe(hdf5::DataSet& set, const std::string& unit, const std::string& doc) {
@@ -85,6 +86,7 @@ Hdf5Recorder::~Hdf5Recorder() {
 }
 
 void Hdf5Recorder::open_to_resume() {
+  remove_stale_mark(output_.path);
   {
     const hdf5::File reader = hdf5::File::open(output_.path, hdf5::Access::read);
     const auto store = CheckpointStore::open(reader);

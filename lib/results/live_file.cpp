@@ -88,16 +88,27 @@ std::optional<Superblock> read_superblock(const std::string& path) {
   const std::uint64_t size = size_of(descriptor);
   ::close(descriptor);
   if (!bytes) return {};
-  return Superblock{((*bytes)[flags_at] & write_marks) != 0, number_at<std::uint64_t>(*bytes, end_of_file_at), size};
+  const unsigned marks = (*bytes)[flags_at] & write_marks;
+  return Superblock{marks != 0, marks == write_marks, number_at<std::uint64_t>(*bytes, end_of_file_at), size};
 }
 
 void check_whole(const std::string& path) {
   const auto superblock = read_superblock(path);
-  if (superblock && superblock->bytes_on_disk < superblock->end_of_file && !LiveFile::is_live(path)) {
+  if (!superblock || LiveFile::is_live(path)) return;
+  if (superblock->bytes_on_disk < superblock->end_of_file) {
     throw base::InputError("cannot read '" + path + "': truncated, it has " +
                            std::to_string(superblock->bytes_on_disk) + " of " +
                            std::to_string(superblock->end_of_file) + " bytes");
   }
+  if (superblock->marked && !superblock->swmr) {
+    throw base::InputError("cannot read '" + path +
+                           "': its writer was killed while opening it; --resume mends it if it holds results");
+  }
+}
+
+void remove_stale_mark(const std::string& path) {
+  const auto superblock = read_superblock(path);
+  if (superblock && superblock->marked) LiveFile(path).open_to_readers(0);
 }
 
 LiveFile::LiveFile(const std::string& path) : path_(path) {

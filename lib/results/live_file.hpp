@@ -15,12 +15,18 @@ namespace muldi::results {
 /// What matters here of the first 48 bytes of an HDF5 file.
 struct Superblock {
   bool marked = false;              ///< marked as open for writing
+  bool swmr = false;                ///< of these, the files that SWMR readers may open
   std::uint64_t end_of_file = 0;    ///< bytes that the file claims to have
   std::uint64_t bytes_on_disk = 0;  ///< bytes that it has
 };
 
-/// Throws InputError if the file has fewer bytes than it claims and nobody is writing it.
+/// Throws InputError if nobody is writing the file and it has fewer bytes than it claims, or a mark that keeps all
+/// readers out.
 void check_whole(const std::string& path);
+
+/// Removes the mark that a killed writer has left; does nothing to other files. Throws InputError if the writer lives,
+/// EnvironmentError if the file cannot be written.
+void remove_stale_mark(const std::string& path);
 
 /// The superblock of a file, or nothing if the file is no HDF5 file, has an older format or a damaged superblock.
 std::optional<Superblock> read_superblock(const std::string& path);

@@ -156,6 +156,10 @@ void Stepper::finish(State& state, std::span<const double> u, StepReport& report
                       std::to_string(options_.refuse_rotation) + "): use a smaller step";
     return;
   }
+  if (manifold_.n_c() > 0) {
+    manifold_.update(x_, q_, *frame_k_);
+    if (manifold_.loops_cross(*frame_n_, *frame_k_)) report.loop_regularity = 0.0;
+  }
   report.residual = residual_of(state);
   const double weight = state.step == 0 ? 0.5 * dt_ : dt_;
   constraint_force_ = -(state.p + 0.5 * dt_ * forces_.force - forces_.momentum) / weight;

@@ -32,8 +32,8 @@ struct StepReport {
   int factorisations = 0;
   double residual = 0.0;  ///< largest projected residual relative to the largest term of it
   model::IntervalWork work;
-  double rotation = 0.0;  ///< largest turn of a body in the step (rad)
-  double loop_regularity = 1.0;
+  double rotation = 0.0;         ///< largest turn of a body in the step (rad)
+  double loop_regularity = 1.0;  ///< relative to that at the start; 0 where the step passed a change of rank
 };
 
 class Stepper {

@@ -53,7 +53,7 @@ LoopResult TimeLoop::run(State& state, Ledger& ledger, StepReport& last, const L
       result.sentence = report.sentence;
       break;
     }
-    if (recorded) record(callbacks, before_, ledger, last, stepper_.constraint_force(), state.multipliers);
+    if (recorded) record(callbacks, before_, ledger, last, {stepper_.constraint_force(), state.multipliers});
     last = report;
     ledger.dissipated += report.work.dissipated;
     ledger.external += report.work.external;
@@ -78,15 +78,15 @@ LoopResult TimeLoop::run(State& state, Ledger& ledger, StepReport& last, const L
 }
 
 void TimeLoop::record(const LoopCallbacks& callbacks, const State& state, const Ledger& ledger, const StepReport& last,
-                      const Eigen::VectorXd& force, const Eigen::VectorXd& multipliers) {
+                      const Reactions& reactions) {
   if (!callbacks.record) return;
   callbacks.record({.step = state.step,
                     .t = state.t,
                     .state = state,
                     .values = values_,
                     .ledger = ledger,
-                    .constraint_force = force,
-                    .multipliers = multipliers,
+                    .constraint_force = reactions.force,
+                    .multipliers = reactions.multipliers,
                     .u = u_before_,
                     .report = last});
 }
@@ -101,7 +101,7 @@ void TimeLoop::record_end(const LoopCallbacks& callbacks, const State& state, Le
   const double half = 0.5 * options_.dt;
   end_force_ = (values_.momentum - state.p) / half;
   end_multipliers_ = nodes_.loop_impulse() / half;
-  record(callbacks, state, ledger, last, end_force_, end_multipliers_);
+  record(callbacks, state, ledger, last, {end_force_, end_multipliers_});
 }
 
 }  // namespace muldi::variational

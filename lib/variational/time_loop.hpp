@@ -70,8 +70,12 @@ class TimeLoop {
 
  private:
   void controls_of(const State& state);
+  struct Reactions {
+    const Eigen::VectorXd& force;
+    const Eigen::VectorXd& multipliers;
+  };
   void record(const LoopCallbacks& callbacks, const State& state, const Ledger& ledger, const StepReport& last,
-              const Eigen::VectorXd& force, const Eigen::VectorXd& multipliers);
+              const Reactions& reactions);
   void record_end(const LoopCallbacks& callbacks, const State& state, Ledger& ledger, const StepReport& last);
 
   const model::Model& model_;
