@@ -82,6 +82,7 @@ void TreeManifold::select_independent_rows() {
       row_joint.push_back(row_joint_[at]);
     } else {
       redundant_.push_back(rows_[at]);
+      redundant_joint_.push_back(row_joint_[at]);
     }
   }
   rows_ = std::move(rows);

@@ -48,6 +48,7 @@ class TreeManifold final : public model::Manifold {
   const std::vector<model::Bilinear>& loop_rows() const { return rows_; }
   const std::vector<model::Bilinear>& redundant_rows() const { return redundant_; }
   const std::vector<int>& loop_row_joint() const { return row_joint_; }
+  const std::vector<int>& redundant_row_joint() const { return redundant_joint_; }
   /// Rows of all constraints of directors and tree joints, for tests and for `violation`.
   const std::vector<model::Bilinear>& tree_rows() const { return tree_rows_; }
 
@@ -61,6 +62,7 @@ class TreeManifold final : public model::Manifold {
   std::vector<model::Bilinear> rows_;
   std::vector<int> row_joint_;
   std::vector<model::Bilinear> redundant_;
+  std::vector<int> redundant_joint_;
   std::vector<model::Bilinear> tree_rows_;
 };
 

@@ -52,7 +52,8 @@ void EquilibriumSolver::evaluate(const StaticState& state, std::span<const doubl
   manifold_.configuration(state.x, q_);
   manifold_.update(state.x, q_, *frame_);
   model_.forces(point(state, u), forces_);
-  terms_ = forces_.force.lpNorm<Eigen::Infinity>();
+  // The largest force seen: at equilibrium the forces on a single unknown cancel, and their sum measures nothing.
+  terms_ = std::max(terms_, forces_.force.lpNorm<Eigen::Infinity>());
   bracket_ = forces_.force;
   manifold_.add_constraint_forces(q_, -1.0, state.multipliers, bracket_);
   manifold_.project(*frame_, bracket_, r_);

@@ -147,6 +147,14 @@ StepReport Stepper::advance(State& state, std::span<const double> u) {
   return report;
 }
 
+void Stepper::carry_residual() {
+  g_.setZero();
+  solver_->solve(r_, g_, dw_, dmu_);
+  v_.setZero();
+  manifold_.lift(*frame_k_, dw_, v_);
+  K_.multiply(v_, bracket_);
+}
+
 void Stepper::finish(State& state, std::span<const double> u, StepReport& report) {
   evaluate(state, u);
   report.rotation = manifold_.largest_rotation(state.q, q_);
@@ -166,7 +174,8 @@ void Stepper::finish(State& state, std::span<const double> u, StepReport& report
   report.work = model_.work(point(state, u));
   manifold_.difference(state.x, x_, state.increment);
   state.multipliers = mu_ / weight;
-  state.p = forces_.momentum + 0.5 * dt_ * forces_.force;
+  carry_residual();
+  state.p = forces_.momentum + 0.5 * dt_ * forces_.force + bracket_;
   state.x = x_;
   state.q = q_;
   ++state.step;

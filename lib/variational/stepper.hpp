@@ -59,6 +59,9 @@ class Stepper {
   double residual_of(const State& state);
   bool newton(const State& state, std::span<const double> u, StepReport& report);
   void damp_until_admissible(const State& state, StepReport& report);
+  /// Sets bracket_ to the momentum that the rounded positions cannot take up, K T w with T_n^T K T w = r. As a part of
+  /// p_{n+1} it keeps the momentum maps of far-travelled bodies to round-off of the momentum, not of the position.
+  void carry_residual();
   void finish(State& state, std::span<const double> u, StepReport& report);
 
   const model::Model& model_;

@@ -22,6 +22,10 @@ function(muldi_test label name)
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(${target} PRIVATE MULDI_SOURCE_DIR="${PROJECT_SOURCE_DIR}" MULDI_BINARY_DIR="${PROJECT_BINARY_DIR}")
   target_link_libraries(${target} PRIVATE ${arg_LINKS} GTest::gtest_main GTest::gmock muldi_warnings)
+  # Only the stress tests run long enough to repay an optimised build of the tests themselves; the libraries are always optimised.
+  if(NOT label STREQUAL "stress")
+    target_compile_options(${target} PRIVATE -O1)
+  endif()
   gtest_discover_tests(${target} TEST_PREFIX "${label}." PROPERTIES LABELS ${label} DISCOVERY_TIMEOUT 60)
   if(arg_LONG)
     # gtest_discover_tests cannot pass a list of labels.

@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+"""Where results go and what happens when they cannot: test_output_file.py MULDI_SIM."""
+
+import os
+import resource
+import unittest
+
+from program import SCENES, ProgramTest, attribute, data_sets, values
+
+PENDULUM = SCENES / "pendulum.yaml"
+TRUNK = SCENES / "elephant_trunk_lumped.yaml"
+
+
+class Names(ProgramTest):
+    def test_the_default_is_the_stem_of_the_scene_in_the_current_folder(self):
+        self.program("run", PENDULUM)
+        self.assertEqual([path.name for path in self.folder.iterdir()], ["pendulum.h5"])
+
+    def test_output_names_another_file(self):
+        (self.folder / "sub").mkdir()
+        self.program("run", PENDULUM, "--output", "sub/other.h5")
+        self.assertEqual(attribute(self.folder / "sub" / "other.h5", "status"), "completed")
+        self.assertFalse((self.folder / "pendulum.h5").exists())
+
+
+class ExistingOutput(ProgramTest):
+    REFUSAL = "error: 'pendulum.h5' exists (--force overwrites it, --output names another file)"
+
+    def test_is_refused_and_untouched(self):
+        file = self.write("pendulum.h5", "the user's own")
+        self.assertEqual(self.message("run", PENDULUM, code=2), self.REFUSAL)
+        self.assertEqual(file.read_text(), "the user's own")
+
+    def test_is_overwritten_with_force(self):
+        self.write("pendulum.h5", "the user's own")
+        self.program("run", PENDULUM, "--force")
+        self.program("run", PENDULUM, "--force", "--set", "dynamics.duration=10")
+        self.assertEqual(list(values(self.folder / "pendulum.h5", "time")), [0, 5, 10])
+
+    def test_is_left_alone_by_a_wrong_scene_even_with_force(self):
+        file = self.write("pendulum.h5", "the user's own")
+        self.program("run", PENDULUM, "--force", "--set", "dynamics.step=0", code=2)
+        self.program("run", SCENES / "four_bar.yaml", "-o", "pendulum.h5", "--force", "--set", "solver.linear=tree", code=2)
+        self.program("run", PENDULUM, "--force", "--set", "initial.bodies={pendulum: {velocity: [1, 0, 0]}}", code=2)
+        self.assertEqual(file.read_text(), "the user's own")
+
+    def test_in_use_by_another_run_is_refused(self):
+        output = self.folder / "pendulum.h5"
+        process = self.start("run", PENDULUM, "--set", "dynamics.duration=100000 s")
+        self.wait_for(output.exists, process, "the first run writes")
+        self.wait_for(lambda: output.stat().st_size > 4096, process, "the first run writes")
+        for option in (["--force"], ["--resume", "pendulum.h5"]):
+            message = self.message("run", PENDULUM, "--set", "dynamics.duration=100000 s", *option[:-1], option[-1], code=2)
+            self.assertEqual(message, "error: 'pendulum.h5' is in use by another process")
+        self.assertEqual(self.interrupt(process, output, 0), 130)
+
+
+class Unwritable(ProgramTest):
+    """The environment fails: exit code 4 with a sentence, nothing left behind."""
+
+    def test_missing_folder(self):
+        self.assertEqual(self.message("run", PENDULUM, "-o", "none/a.h5", code=4), "error: cannot write 'none/a.h5': No such file or directory")
+
+    def test_file_for_a_folder(self):
+        self.write("file", "")
+        self.assertEqual(self.message("run", PENDULUM, "-o", "file/a.h5", code=4), "error: cannot write 'file/a.h5': Not a directory")
+
+    def test_folder_that_takes_no_files(self):
+        # /proc takes none from root either.
+        self.assertEqual(self.message("run", PENDULUM, "-o", "/proc/a.h5", code=4), "error: cannot write '/proc/a.h5': No such file or directory")
+
+    def test_folder_and_device_for_a_file(self):
+        for path in (self.folder, "/dev/full"):
+            for option in ([], ["--force"]):
+                message = self.message("run", PENDULUM, "-o", path, *option, code=4)
+                self.assertEqual(message, f"error: cannot write '{path}': not a regular file")
+
+
+class FullDisk(ProgramTest):
+    """A limit of the file size stands for the full disk."""
+
+    def run_within(self, size, **options):
+        def limit():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+        return self.program("run", TRUNK, "-o", "a.h5", code=4, preexec_fn=limit, **options)
+
+    def test_without_room_for_the_start_nothing_is_left(self):
+        done = self.run_within(50_000)
+        self.assertRegex(done.stderr, r"^error: cannot write 'a.h5' .*: File too large\n$")
+        self.assertEqual(os.listdir(self.folder), [])
+
+    def test_what_was_written_before_stays_valid_and_can_be_resumed(self):
+        self.program("run", TRUNK, "-o", "whole.h5")
+        whole = data_sets(self.folder / "whole.h5")
+        for size in (1_600_000, 2_000_000, 2_500_000):
+            with self.subTest(size=size):
+                done = self.run_within(size)
+                self.assertRegex(done.stderr, r"^error: cannot write 'a.h5'.*: File too large\n$")
+                output = self.folder / "a.h5"
+                self.assertEqual(attribute(output, "status"), "write_error")
+                cut = data_sets(output)
+                self.assertEqual(sorted(cut), sorted(whole))
+                for name, (_, _, content) in cut.items():
+                    self.assertTrue(whole[name][2].startswith(content), name)
+                self.program("info", "a.h5")
+                self.program("run", TRUNK, "--resume", "a.h5")
+                self.assert_same_bits("whole.h5", "a.h5")
+                output.unlink()
+
+
+if __name__ == "__main__":
+    unittest.main()
