@@ -17,22 +17,20 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-StaticState scene_pose(const model::Model &model) {
+StaticState scene_pose(const model::Model& model) {
   return {model.manifold->reference(), VectorXd::Zero(model.manifold->n_c())};
 }
 
 /// The equilibrium under the model's controls at t = 0, found from the scene
 /// pose.
-StaticState equilibrium(const model::Model &model,
-                        EquilibriumReport *report = nullptr) {
+StaticState equilibrium(const model::Model& model, EquilibriumReport* report = nullptr) {
   std::vector<double> u(model.controls.size());
   model.evaluate_controls(0.0, u);
   StaticState state = scene_pose(model);
   EquilibriumSolver solver(model, {});
   const EquilibriumReport done = solver.solve(state, u);
   EXPECT_TRUE(done.converged);
-  if (report != nullptr)
-    *report = done;
+  if (report != nullptr) *report = done;
   return state;
 }
 
@@ -49,8 +47,7 @@ TEST(Equilibrium, OfTheMuscleJointIsThePublishedAngle) {
 
 TEST(Equilibrium, OfTheMuscleJointWithTheTrunksMaterial) {
   test::RigidSystem system = test::muscle_joint(3e4);
-  for (auto &muscle : system.muscles)
-    muscle.element.electric_law = muscles::ElectricLaw::ideal(3.7, test::eps0);
+  for (auto& muscle : system.muscles) muscle.element.electric_law = muscles::ElectricLaw::ideal(3.7, test::eps0);
   const StaticState state = equilibrium(*test::make_model(system));
   EXPECT_NEAR(std::abs(state.x[0]) / test::degree, 9.5077006219, 1e-10);
 }
@@ -58,15 +55,11 @@ TEST(Equilibrium, OfTheMuscleJointWithTheTrunksMaterial) {
 TEST(Equilibrium, OfTheTrunkIsTheReferenceTip) {
   const auto model = test::make_model(test::trunk(test::odd_fields(3e4)));
   const StaticState state = equilibrium(*model);
-  for (const double angle : state.x)
-    EXPECT_NEAR(std::abs(angle) / test::degree, 9.507700621871, 1e-11);
+  for (const double angle : state.x) EXPECT_NEAR(std::abs(angle) / test::degree, 9.507700621871, 1e-11);
   const test::End tip = test::trunk_tip();
   const Vector3d at =
-      multibody::body_point(tip.body, tip.local)
-          .value(test::configuration_at(*model->manifold, state.x));
-  EXPECT_LT(
-      (at - Vector3d(-95.8649066679, 274.0421097373, 73.0752202916)).norm(),
-      1e-7);
+      multibody::body_point(tip.body, tip.local).value(test::configuration_at(*model->manifold, state.x));
+  EXPECT_LT((at - Vector3d(-95.8649066679, 274.0421097373, 73.0752202916)).norm(), 1e-7);
 }
 
 TEST(Equilibrium, OfFreeActuatorsAreTheTabulatedStretches) {
@@ -76,13 +69,9 @@ TEST(Equilibrium, OfFreeActuatorsAreTheTabulatedStretches) {
                                                      {3e4, 0.953727609917},
                                                      {4e4, 0.909804644007},
                                                      {5e4, 0.833389955634}};
-  for (const auto &[field, stretch] : table) {
-    EXPECT_NEAR(
-        equilibrium(*test::make_model(test::membrane(field, 0.01))).x[0],
-        stretch, 1e-11);
-    EXPECT_NEAR(
-        equilibrium(*test::make_model(test::round_actuator(field, 0.01))).x[0],
-        40.0 * stretch, 1e-9);
+  for (const auto& [field, stretch] : table) {
+    EXPECT_NEAR(equilibrium(*test::make_model(test::membrane(field, 0.01))).x[0], stretch, 1e-11);
+    EXPECT_NEAR(equilibrium(*test::make_model(test::round_actuator(field, 0.01))).x[0], 40.0 * stretch, 1e-9);
   }
 }
 
@@ -98,9 +87,7 @@ TEST(Equilibrium, JustBelowPullInIsThatOfTheQuartic) {
     (std::pow(middle, 4) - middle + beta < 0.0 ? low : high) = middle;
   }
   EquilibriumReport report;
-  EXPECT_NEAR(
-      equilibrium(*test::make_model(test::membrane(field, 0.0)), &report).x[0],
-      low, 1e-8);
+  EXPECT_NEAR(equilibrium(*test::make_model(test::membrane(field, 0.0)), &report).x[0], low, 1e-8);
   EXPECT_EQ(report.stability, Stability::stable);
 }
 
@@ -136,13 +123,11 @@ TEST(Equilibrium, OfAHangingChainIsWhereItsDynamicsSettle) {
   // finds the equilibrium.
   test::RigidSystem system = test::revolute_chain(3);
   for (int j = 0; j < 3; ++j) {
-    system.joint_forces.push_back(
-        {.joint = j, .stiffness = 60.0, .rest = 0.2, .damping = 4e3});
+    system.joint_forces.push_back({.joint = j, .stiffness = 60.0, .rest = 0.2, .damping = 4e3});
   }
   const auto model = test::make_model(system);
   const StaticState state = equilibrium(*model);
-  const test::Run run = test::run(*model, test::state_at_rest(*model),
-                                  {.dt = 10.0, .steps = 6000});
+  const test::Run run = test::run(*model, test::state_at_rest(*model), {.dt = 10.0, .steps = 6000});
   ASSERT_EQ(run.result.status, variational::Status::completed);
   EXPECT_GT(state.x.norm(), 0.3);
   EXPECT_LT((run.state.x - state.x).lpNorm<Eigen::Infinity>(), 1e-8);
@@ -151,10 +136,8 @@ TEST(Equilibrium, OfAHangingChainIsWhereItsDynamicsSettle) {
 TEST(Equilibrium, HangsFreelyTurningJointsStraightDown) {
   // A pendulum from horizontal, without any spring.
   EquilibriumReport report;
-  const StaticState state =
-      equilibrium(*test::make_model(test::pendulum()), &report);
-  EXPECT_NEAR(std::abs(std::remainder(state.x[0], 2.0 * std::acos(-1.0))),
-              0.5 * std::acos(-1.0), 1e-10);
+  const StaticState state = equilibrium(*test::make_model(test::pendulum()), &report);
+  EXPECT_NEAR(std::abs(std::remainder(state.x[0], 2.0 * std::acos(-1.0))), 0.5 * std::acos(-1.0), 1e-10);
   EXPECT_LT(std::sin(state.x[0]), 0.0) << "below";
   EXPECT_EQ(report.stability, Stability::stable);
 }
@@ -166,14 +149,12 @@ TEST(Equilibrium, StandingUpIsUnstable) {
   solver.linearise(state, {});
   EXPECT_LT(solver.residual().norm(), 1e-13);
   EXPECT_EQ(solver.stability(), Stability::unstable);
-  EXPECT_NEAR(solver.tangent()(0, 0), -40.0 * test::earth_gravity * 46.0,
-              1e-10);
+  EXPECT_NEAR(solver.tangent()(0, 0), -40.0 * test::earth_gravity * 46.0, 1e-10);
 }
 
 TEST(Equilibrium, KnowsMotionsWithoutStiffness) {
   EquilibriumReport report;
-  static_cast<void>(
-      equilibrium(*test::make_model(test::pendulum(0.0)), &report));
+  static_cast<void>(equilibrium(*test::make_model(test::pendulum(0.0)), &report));
   EXPECT_EQ(report.stability, Stability::free);
   // A top on a ball joint hangs down but turns freely about its axis.
   test::RigidSystem top = test::heavy_top(2.5);
@@ -197,8 +178,7 @@ TEST(Equilibrium, OfALoopHasMultipliersThatHoldIt) {
 TEST(Equilibrium, OfASystemThatCannotMoveIsItsPose) {
   test::RigidSystem system;
   system.add_body(1.0, Vector3d::Ones(), {});
-  system.connect(multibody::Fixed::pattern, {multibody::ground, 0},
-                 Vector3d::Zero());
+  system.connect(multibody::Fixed::pattern, {multibody::ground, 0}, Vector3d::Zero());
   const auto model = test::make_model(system);
   EquilibriumReport report;
   static_cast<void>(equilibrium(*model, &report));
@@ -210,11 +190,10 @@ TEST(Equilibrium, DoesNotDependOnThePlaceOfTheScene) {
   const test::RigidSystem system = test::trunk(test::odd_fields(3e4));
   const StaticState at = equilibrium(*test::make_model(system));
   for (int n = 0; n < 3; ++n) {
-    const StaticState moved = equilibrium(
-        *test::make_model(system.moved(test::random_pose(random, 300.0))));
+    const StaticState moved = equilibrium(*test::make_model(system.moved(test::random_pose(random, 300.0))));
     EXPECT_LT((moved.x - at.x).lpNorm<Eigen::Infinity>(), 1e-10);
   }
 }
 
-} // namespace
-} // namespace muldi::statics
+}  // namespace
+}  // namespace muldi::statics

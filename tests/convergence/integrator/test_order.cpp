@@ -1,0 +1,84 @@
+/// The midpoint rule is of order 2 in positions, momenta, reactions and multipliers, all at nodes (numerics 5 no. 3).
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "support/linkages.hpp"
+#include "support/systems.hpp"
+#include "support/trajectory.hpp"
+
+namespace muldi::variational {
+namespace {
+
+using Eigen::VectorXd;
+using test::RunSetup;
+
+/// Binding: slope 2.00 +- 0.05.
+constexpr double slack = 0.05;
+
+void expect_order_two(const model::Model& model, const State& start, const RunSetup& setup) {
+  const test::Orders orders = test::observed_orders(model, start, setup);
+  EXPECT_NEAR(orders.q, 2.0, slack) << "positions";
+  EXPECT_NEAR(orders.momentum, 2.0, slack) << "momenta";
+  // Free lengths have no constraints, trees no multipliers.
+  if (model.node_sizes[0] == 12) {
+    EXPECT_NEAR(orders.reaction, 2.0, slack) << "reactions";
+  }
+  if (model.manifold->n_c() > 0) {
+    EXPECT_NEAR(orders.multipliers, 2.0, slack) << "multipliers";
+  }
+  std::cout << "orders: q " << orders.q << ", p " << orders.momentum << ", reaction " << orders.reaction
+            << ", multipliers " << orders.multipliers << '\n';
+}
+
+void expect_order_two(const test::RigidSystem& system, const RunSetup& setup) {
+  const auto model = test::make_model(system);
+  expect_order_two(*model, test::state_at_rest(*model), setup);
+}
+
+TEST(Order, IsTwoForThePendulum) { expect_order_two(test::pendulum(), {.dt = 10.0, .steps = 60}); }
+
+TEST(Order, IsTwoForTheDoublePendulum) { expect_order_two(test::double_pendulum(), {.dt = 4.0, .steps = 100}); }
+
+TEST(Order, IsTwoForTheMuscleJoint) { expect_order_two(test::muscle_joint(3e4), {.dt = 1.0, .steps = 100}); }
+
+TEST(Order, IsTwoForTheTrunk) { expect_order_two(test::trunk(test::odd_fields(3e4)), {.dt = 1.0, .steps = 100}); }
+
+TEST(Order, IsTwoForTheMembrane) { expect_order_two(test::membrane(3e4, 0.01), {.dt = 0.01, .steps = 50}); }
+
+TEST(Order, IsTwoForTheRoundActuator) { expect_order_two(test::round_actuator(3e4, 0.01), {.dt = 0.02, .steps = 100}); }
+
+TEST(Order, IsTwoForTheFourBar) {
+  expect_order_two(test::four_bar({}, test::earth_gravity), {.dt = 1.0, .steps = 100});
+}
+
+TEST(Order, IsTwoForTheSliderCrank) {
+  expect_order_two(test::slider_crank(test::earth_gravity), {.dt = 1.0, .steps = 100});
+}
+
+TEST(Order, StaysTwoUnderSmoothControls) {
+  // The control of a step is the one at its middle (numerics 1.10).
+  test::RigidSystem joint = test::muscle_joint(0.0);
+  joint.controls[0].function =
+      base::TimeFunction(base::Sine{.amplitude = 1.5e4, .frequency = 0.02, .phase = 0.3, .offset = 2e4});
+  expect_order_two(joint, {.dt = 1.0, .steps = 100});
+  test::RigidSystem film = test::membrane(0.0, 0.01);
+  film.controls[0].function =
+      base::TimeFunction(base::Sine{.amplitude = 1e4, .frequency = 1.0, .phase = 0.3, .offset = 2e4});
+  expect_order_two(film, {.dt = 0.01, .steps = 100});
+}
+
+TEST(Order, StaysTwoUnderControlsThatJumpAtNodes) {
+  test::RigidSystem joint = test::muscle_joint(0.0);
+  joint.controls[0].function = base::TimeFunction(base::Samples{.times = {0.0, 20.0, 50.0}, .values = {1e4, 3e4, 2e4}});
+  expect_order_two(joint, {.dt = 1.0, .steps = 75});
+}
+
+TEST(Order, IsTwoWithSpringsAndDampersInTheJoint) {
+  test::RigidSystem system = test::pendulum();
+  system.joint_forces.push_back({.joint = 0, .stiffness = 20.0, .rest = 0.2, .damping = 500.0});
+  expect_order_two(system, {.dt = 8.0, .steps = 50});
+}
+
+}  // namespace
+}  // namespace muldi::variational

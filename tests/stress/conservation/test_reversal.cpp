@@ -1,0 +1,68 @@
+/// Conservative motions run back (numerics 5 no. 15).
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "stress/energy_history.hpp"
+#include "support/systems.hpp"
+
+namespace muldi {
+namespace {
+
+struct Return {
+  double position = 0.0;  ///< largest distance from the start, mm
+  double momentum = 0.0;  ///< relative
+};
+
+/// Runs 2000 steps there, turns the momentum round, and 2000 back.
+Return there_and_back(const model::Model& model, const variational::State& start, double dt) {
+  const test::RunSetup setup{.dt = dt, .steps = 2000};
+  double largest = start.p.norm();
+  test::Run there = test::run(model, start, setup, [&](const variational::NodeRecord& node) {
+    largest = std::max(largest, node.values.momentum.norm());
+  });
+  EXPECT_EQ(there.result.status, variational::Status::completed) << there.result.sentence;
+  // p_N = pi + dt/2 F of the last interval; the same interval run back has -pi and +F at its begin.
+  variational::State turned = there.state;
+  turned.p = -turned.p;
+  turned.increment = -turned.increment;
+  turned.step = 0;
+  turned.t = 0.0;
+  Return result;
+  const test::Run back = test::run(model, turned, setup, [&](const variational::NodeRecord& node) {
+    if (node.step != setup.steps) return;
+    result.position = (node.state.q - start.q).lpNorm<Eigen::Infinity>();
+    result.momentum = (node.values.momentum + start.p).norm() / largest;
+  });
+  EXPECT_EQ(back.result.status, variational::Status::completed) << back.result.sentence;
+  std::cout << "back to " << result.position << " mm, momentum " << result.momentum << '\n';
+  return result;
+}
+
+void expect_return(const test::RigidSystem& system, const Eigen::VectorXd& x, double dt) {
+  const auto model = test::make_model(system);
+  const variational::State start = test::state_at(*model, x, Eigen::VectorXd::Zero(model->manifold->n_v()));
+  const Return result = there_and_back(*model, start, dt);
+  EXPECT_LT(result.position, 1e-9);
+  EXPECT_LT(result.momentum, 1e-9);
+}
+
+TEST(Reversal, BringsThePendulumBack) { expect_return(test::pendulum(), Eigen::VectorXd::Zero(1), 10.0); }
+
+TEST(Reversal, BringsTheDoublePendulumBackFromRegularMotion) {
+  expect_return(test::double_pendulum(), Eigen::Vector2d(-70.0 * test::degree, 0.0), 5.0);
+}
+
+TEST(Reversal, BringsTheUndampedMuscleJointBack) {
+  expect_return(test::undamped(test::muscle_joint(3e4)), Eigen::VectorXd::Zero(1), 2.0);
+}
+
+TEST(Reversal, DoesNotBringADampedMotionBack) {
+  test::RigidSystem system = test::pendulum();
+  system.joint_forces.push_back({.joint = 0, .damping = 20.0});
+  const auto model = test::make_model(system);
+  EXPECT_GT(there_and_back(*model, test::state_at_rest(*model), 1.0).position, 1.0);
+}
+
+}  // namespace
+}  // namespace muldi

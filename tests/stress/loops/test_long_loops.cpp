@@ -1,0 +1,48 @@
+/// Closed loops over long runs (numerics 5 no. 20).
+#include <gtest/gtest.h>
+
+#include <iostream>
+#include <numbers>
+
+#include "stress/energy_history.hpp"
+#include "support/linkages.hpp"
+
+namespace muldi {
+namespace {
+
+constexpr double gravity = 9.81e-3;
+
+TEST(LongLoops, FourBarStaysClosedAndKeepsItsEnergyBand) {
+  const auto model = test::make_model(test::four_bar({}, gravity));
+  const variational::State start = test::state_at_rest(*model);
+  const test::EnergyHistory coarse = test::energy_history(*model, start, 2.0, 100'000);
+  const test::EnergyHistory fine = test::energy_history(*model, start, 1.0, 100'000);
+  std::cout << "band " << coarse.band().all / coarse.swing() << " of " << coarse.swing() << " mJ, last/first tenth "
+            << coarse.band().last_tenth / coarse.band().first_tenth << ", ratio " << coarse.band().all / fine.band().all
+            << ", violation " << coarse.violation() << '\n';
+  EXPECT_LE(coarse.band().last_tenth, 1.1 * coarse.band().first_tenth);
+  EXPECT_NEAR(coarse.band().all / fine.band().all, 4.0, 0.2);
+  EXPECT_LT(coarse.violation(), 1e-11);
+}
+
+TEST(LongLoops, BennettLinkageTurnsThroughWithItsOneFreedom) {
+  const auto model = test::make_model(test::bennett(1.0));
+  ASSERT_EQ(model->manifold->n_v() - model->manifold->n_c(), 1);
+  const variational::State start =
+      test::state_at(*model, model->manifold->reference(), test::admissible_rates(*model, 0, 0.01));
+  double turned = 0.0;
+  test::EnergyHistory history(*model, 20'000);
+  const test::Run done = test::run(*model, start, {.dt = 0.5, .steps = 20'000}, [&](const auto& node) {
+    history.add(node);
+    turned = std::max(turned, std::abs(node.state.x[0]));
+  });
+  ASSERT_EQ(done.result.status, variational::Status::completed) << done.result.sentence;
+  std::cout << "turns " << turned / (2.0 * std::numbers::pi) << ", violation " << history.violation() << ", band "
+            << history.band().all / done.ledger.initial_total << " of the energy\n";
+  EXPECT_GT(turned, 10.0 * 2.0 * std::numbers::pi) << "ten turns";
+  EXPECT_LT(history.violation(), 1e-10) << "redundant rows included";
+  EXPECT_LE(history.band().last_tenth, 1.1 * history.band().first_tenth);
+}
+
+}  // namespace
+}  // namespace muldi
