@@ -7,7 +7,7 @@ namespace muldi::muscles {
 std::string LumpedDea::inadmissible(double z) const {
   const double stretch = z / length;
   if (stretch > least_stretch) return {};
-  return base::format("stretch {} below {}", base::number_text(stretch, 4), base::number_text(least_stretch));
+  return base::format("stretch {} below {}", base::number_text(stretch, 8), base::number_text(least_stretch));
 }
 
 std::string LumpedDea::advice(double z, double zd, double field) const {

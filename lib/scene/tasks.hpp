@@ -136,7 +136,7 @@ struct Solver {
     constexpr auto optional = Need::optional;
     visit(Field{.key = "tolerance",
                 .doc = "largest Newton increment (rad, or fraction of the scene's size) whose result is accepted",
-                .range = {.min = 0.0, .max = 1.0, .min_open = true, .max_open = true},
+                .range = {.min = 1e-13, .max = 1e-3},
                 .need = optional},
           self.tolerance);
     visit(Field{.key = "max_iterations",
