@@ -190,10 +190,10 @@ void joint_force_rate(const Joint& joint, const MovingLink& moving, const Vector
 
 }  // namespace
 
-void projection_rate(const KinematicTree& tree, const TreeFrame& frame, const Twists& twists, const Eigen::VectorXd& f,
-                     const Twists& accumulated, Eigen::VectorXd& rate) {
+void projection_rate(const KinematicTree& tree, const TreeFrame& frame, const Twists& twists, const FrozenForce& force,
+                     Eigen::VectorXd& rate) {
   Twists& change = frame.twists;  // rate of the accumulated wrenches
-  wrench_rates(tree, frame, twists, f, change);
+  wrench_rates(tree, frame, twists, force.f, change);
   for (std::size_t l = tree.links.size(); l-- > 0;) {
     const TreeLink& link = tree.links[l];
     const auto column = static_cast<Eigen::Index>(l);
@@ -204,7 +204,7 @@ void projection_rate(const KinematicTree& tree, const TreeFrame& frame, const Tw
       moving.parent = parent->pose;
       moving.parent_twist = twists.col(parent_column);
     }
-    const Vector6 wrench = accumulated.col(column);
+    const Vector6 wrench = force.accumulated.col(column);
     const Vector6 wrench_rate = change.col(column);
     joint_force_rate(tree.joint(link), moving, wrench, wrench_rate, rate);
     if (parent == nullptr) continue;

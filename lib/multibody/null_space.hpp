@@ -50,9 +50,14 @@ void accumulate_wrenches(const KinematicTree& tree, const TreeFrame& frame, Twis
 /// r = T_b^T W with accumulated wrenches.
 void joint_forces_of(const KinematicTree& tree, const TreeFrame& frame, const Twists& accumulated, Eigen::VectorXd& r);
 
-/// d(T(q)^T f)/dt along the velocity w with f frozen; `twists` are those of w, `wrenches` the plain and `accumulated`
-/// the accumulated wrenches of f.
-void projection_rate(const KinematicTree& tree, const TreeFrame& frame, const Twists& twists, const Eigen::VectorXd& f,
-                     const Twists& accumulated, Eigen::VectorXd& rate);
+/// A force f (n_q) that is kept while the configuration moves, with the accumulated wrenches of it.
+struct FrozenForce {
+  const Eigen::VectorXd& f;
+  const Twists& accumulated;
+};
+
+/// d(T(q)^T f)/dt along the velocity whose twists are given, with f frozen.
+void projection_rate(const KinematicTree& tree, const TreeFrame& frame, const Twists& twists, const FrozenForce& force,
+                     Eigen::VectorXd& rate);
 
 }  // namespace muldi::multibody

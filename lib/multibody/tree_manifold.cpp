@@ -234,7 +234,7 @@ void TreeManifold::add_curvature(const model::Frame& frame, const Eigen::VectorX
     unit[k] = 1.0;
     twists_of(tree_, at, unit, twists);
     unit[k] = 0.0;
-    projection_rate(tree_, at, twists, f, accumulated, rate);
+    projection_rate(tree_, at, twists, {f, accumulated}, rate);
     A.col(k) -= rate;
     if (rows_.empty()) continue;
     lift_twists(tree_, at, twists, dq);
