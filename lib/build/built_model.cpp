@@ -108,7 +108,6 @@ BuiltModel build_model(const scene::Scene& scene) {
   const std::vector<multibody::Pose> poses = place_bodies(scene, errors);
   if (!errors.empty()) throw base::InputError(std::move(errors));
   const double size = scene_size(scene, poses);
-  built.model->length_scale = size;
   make_manifold(scene, poses, size, built);
   built.model->node_sizes.assign(scene.bodies.size(), 12);
   built.model->node_sizes.resize(scene.bodies.size() + static_cast<std::size_t>(built.manifold->n_plain()), 1);

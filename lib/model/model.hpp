@@ -26,7 +26,6 @@ struct Model {
   std::unique_ptr<Manifold> manifold;
   std::vector<Control> controls;
   std::vector<Observable> observables;
-  double length_scale = 1.0;  ///< size of the scene; makes increments dimensionless
 
   /// Requests the pattern of all terms and binds them; call once, after the last term.
   void bind();

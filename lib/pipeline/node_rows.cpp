@@ -23,7 +23,7 @@ NodeRows::NodeRows(results::Recorder& recorder, const scene::Scene& scene, const
                                         .doc = swept ? "value of the swept control" : "factor of all controls at t = 0",
                                         .expected_rows = expected_rows});
   }
-  declare_common(scene);
+  declare_common();
   if (kind == Kind::dynamics) {
     declare_dynamics();
   } else {
@@ -37,7 +37,7 @@ results::Channel NodeRows::declare(const std::string& path, results::Shape shape
       series_, {.path = prefix_ + path, .shape = std::move(shape), .unit = units_.unit_name(unit), .doc = doc});
 }
 
-void NodeRows::declare_common(const scene::Scene&) {
+void NodeRows::declare_common() {
   std::size_t next = 0;
   for (const model::Observable& observable : built_.model->observables) {
     if (kind_ == Kind::statics && observable.of_motion) continue;

@@ -39,7 +39,7 @@ class NodeRows {
     std::size_t first;  // in observed_
   };
   results::Channel declare(const std::string& path, results::Shape shape, base::Dimension unit, const std::string& doc);
-  void declare_common(const scene::Scene& scene);
+  void declare_common();
   void declare_dynamics();
   void declare_statics();
   void write_common(const model::NodeView& view, std::span<const model::Energy> parts);

@@ -86,7 +86,7 @@ SweepResult Sweep::natural(StaticState& state, const SweepCallbacks& callbacks) 
       const double next = last ? goal : load + step;
       controls_at(load);
       solver_.linearise(state, u_);
-      const Eigen::VectorXd tangent = tangent_at(state, load, Eigen::VectorXd());
+      const Eigen::VectorXd tangent = tangent_at(Eigen::VectorXd());
       StaticState trial = state;
       const double predicted = std::abs((next - load) / range) * tangent.head(moved.size()).norm() /
                                std::max(std::abs(tangent[moved.size()]), 1e-300);
@@ -123,7 +123,7 @@ SweepResult Sweep::natural(StaticState& state, const SweepCallbacks& callbacks) 
 // ---- pseudo-arc-length (Keller): unknowns (w / scale, load / range), orthogonal to the tangent of the last point
 // --------
 
-Eigen::MatrixXd Sweep::bordered(double, const Eigen::VectorXd& tangent) {
+Eigen::MatrixXd Sweep::bordered(const Eigen::VectorXd& tangent) {
   const Eigen::Index n_v = solver_.tangent().rows();
   const Eigen::Index n_c = solver_.loop_rows().rows();
   const Eigen::VectorXd& scale = solver_.scale();
@@ -137,13 +137,13 @@ Eigen::MatrixXd Sweep::bordered(double, const Eigen::VectorXd& tangent) {
   return matrix;
 }
 
-Eigen::VectorXd Sweep::tangent_at(const StaticState&, double load, const Eigen::VectorXd& previous) {
+Eigen::VectorXd Sweep::tangent_at(const Eigen::VectorXd& previous) {
   const Eigen::Index n_v = solver_.tangent().rows();
   const Eigen::Index n_c = solver_.loop_rows().rows();
   Eigen::VectorXd border = previous;
   if (border.size() == 0) border = Eigen::VectorXd::Unit(n_v + 1, n_v);
   Eigen::VectorXd rhs = Eigen::VectorXd::Unit(n_v + n_c + 1, n_v + n_c);
-  const Eigen::VectorXd solution = bordered(load, border).partialPivLu().solve(rhs);
+  const Eigen::VectorXd solution = bordered(border).partialPivLu().solve(rhs);
   return solution.head(n_v + 1).normalized();
 }
 
@@ -170,7 +170,7 @@ bool Sweep::corrector(StaticState& at, double& load, const Eigen::VectorXd& tang
         tangent.head(n_v).dot(moved.cwiseQuotient(scale)) + tangent[n_v] * (load - start_load) / range;
     Eigen::VectorXd rhs(n_v + n_c + 1);
     rhs << scale.cwiseProduct(solver_.residual()), -solver_.gaps(), arc - travelled;
-    const Eigen::VectorXd increment = bordered(load, tangent).partialPivLu().solve(rhs);
+    const Eigen::VectorXd increment = bordered(tangent).partialPivLu().solve(rhs);
     const double size = increment.head(n_v + 1).lpNorm<Eigen::Infinity>();
     if (!std::isfinite(size) || size > 1.0) return false;
     model_.manifold->retract(at.x, scale.cwiseProduct(increment.head(n_v)), at.x);
@@ -197,7 +197,7 @@ SweepResult Sweep::arc_length(StaticState& state, const SweepCallbacks& callback
   const int most_points = 100 * options_.steps;
   double arc = nominal;
   double load = options_.from;
-  Eigen::VectorXd tangent = tangent_at(state, load, Eigen::VectorXd());
+  Eigen::VectorXd tangent = tangent_at(Eigen::VectorXd());
   for (int point = 0; point < most_points; ++point) {
     if (callbacks.interrupted && callbacks.interrupted()) {
       result.end = SweepResult::End::interrupted;
@@ -236,7 +236,7 @@ SweepResult Sweep::arc_length(StaticState& state, const SweepCallbacks& callback
     state = trial;
     load = trial_load;
     record(callbacks, load, state, report);
-    tangent = tangent_at(state, load, tangent);
+    tangent = tangent_at(tangent);
     if (report.iterations <= 4) arc = std::min(2.0 * arc, nominal);
   }
   result.last_good = load;

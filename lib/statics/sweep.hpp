@@ -57,8 +57,10 @@ class Sweep {
   void controls_at(double load);
   void record(const SweepCallbacks& callbacks, double load, const StaticState& state, const EquilibriumReport& report);
   bool corrector(StaticState& at, double& load, const Eigen::VectorXd& tangent, double arc, EquilibriumReport& report);
-  Eigen::VectorXd tangent_at(const StaticState& state, double load, const Eigen::VectorXd& previous);
-  Eigen::MatrixXd bordered(double load, const Eigen::VectorXd& tangent);
+  /// Unit tangent of the curve at the linearised state, on the side of `previous` (of rising load if empty).
+  Eigen::VectorXd tangent_at(const Eigen::VectorXd& previous);
+  /// The linearised equations with the border row `tangent`.
+  Eigen::MatrixXd bordered(const Eigen::VectorXd& tangent);
 
   const model::Model& model_;
   std::vector<double> u_fixed_;

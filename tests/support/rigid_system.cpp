@@ -108,7 +108,6 @@ std::unique_ptr<model::Model> make_model(const RigidSystem& system) {
   auto model = std::make_unique<model::Model>();
   multibody::KinematicTree tree = multibody::build_tree(system.n_bodies(), system.joints);
   model->node_sizes.assign(static_cast<std::size_t>(system.n_bodies()), 12);
-  model->length_scale = system.length;
   model->controls = system.controls;
   if (system.n_bodies() > 0) {
     model->terms.push_back(std::make_unique<multibody::RigidBodies>(system.bodies, system.gravity));
