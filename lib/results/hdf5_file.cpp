@@ -17,6 +17,7 @@ namespace {
 constexpr std::size_t compress_from_bytes = std::size_t{64} << 10;
 constexpr std::size_t fixed_chunk_bytes = std::size_t{1} << 20;
 constexpr unsigned deflate_level = 1;  // after the shuffle filter higher levels gain little and cost much
+constexpr std::size_t memory_growth = 4096;
 constexpr std::size_t max_rank = 8;
 constexpr unsigned swmr_attempts = 20;  // one millisecond in all
 
@@ -39,7 +40,7 @@ std::string reason() {
 
 [[noreturn]] void fail_on(const Origin& origin, const std::string& object) {
   const std::string what = "'" + origin.file + "'" + (object.empty() ? "" : " (/" + object + ")") + ": " + reason();
-  if (origin.access == Access::write) throw base::EnvironmentError("cannot write " + what);
+  if (origin.access != Access::read) throw base::EnvironmentError("cannot write " + what);
   throw base::InputError("cannot read " + what);
 }
 
@@ -50,11 +51,11 @@ const char* name_of(const std::string& object) { return object.empty() ? "/" : o
 hid_t file_type(ValueType type) { return type == ValueType::float64 ? H5T_IEEE_F64LE : H5T_STD_I64LE; }
 hid_t memory_type(ValueType type) { return type == ValueType::float64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64; }
 
-Id text_type() {
-  Id type(H5Tcopy(H5T_C_S1));
-  H5Tset_size(type.get(), H5T_VARIABLE);
-  H5Tset_cset(type.get(), H5T_CSET_UTF8);
-  return type;
+/// The type of every text attribute, made once.
+hid_t text_type() {
+  static const hid_t type = H5Tcopy(H5T_C_S1);
+  static const bool ready = H5Tset_size(type, H5T_VARIABLE) >= 0 && H5Tset_cset(type, H5T_CSET_UTF8) >= 0;
+  return ready ? type : H5I_INVALID_HID;
 }
 
 /// Once, before any other call. The library's cleanup at exit would trip over a file that could not be closed for want
@@ -134,8 +135,7 @@ bool write_attribute(const Id& owner, const std::string& name, const AttributeVa
   if (const auto* real = std::get_if<double>(&value)) return write(H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, real);
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return write(H5T_STD_I64LE, H5T_NATIVE_INT64, integer);
   const char* text = std::get<std::string>(value).c_str();
-  const Id type = text_type();
-  return write(type.get(), type.get(), &text);
+  return write(text_type(), text_type(), &text);
 }
 
 /// File and memory selections of some rows; a scalar is its own row.
@@ -150,7 +150,6 @@ std::pair<Id, Id> select_rows(const Id& data_set, const Shape& shape, std::size_
 }  // namespace
 
 std::string library_version() {
-  prepare();
   unsigned major = 0, minor = 0, release = 0;
   H5get_libversion(&major, &minor, &release);
   return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(release);
@@ -191,7 +190,6 @@ DataSet::DataSet(Id id, Origin origin, const ChannelSpec& spec, RowStorage stora
 }
 
 void DataSet::fail() const { fail_on(origin_, path_); }
-
 void DataSet::add_attribute(const std::string& name, const AttributeValue& value) {
   if (!write_attribute(id_, name, value)) fail();
 }
@@ -241,7 +239,9 @@ File::File(Origin origin)
 
 File File::create(const std::string& path) {
   const Id access = access_properties();
+  H5Pset_fapl_core(access.get(), memory_growth, true);
   File file({path, Access::write});
+  file.in_memory_ = true;
   file.id_ = Id(file.check(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), ""));
   return file;
 }
@@ -249,8 +249,9 @@ File File::create(const std::string& path) {
 File File::open(const std::string& path, Access access) {
   const Id properties = access_properties();
   File file({path, access});
-  if (access == Access::write) {
-    file.id_ = Id(file.check(H5Fopen(path.c_str(), H5F_ACC_RDWR, properties.get()), ""));
+  const unsigned write = H5F_ACC_RDWR | (access == Access::append ? H5F_ACC_SWMR_WRITE : 0U);
+  if (access != Access::read) {
+    file.id_ = Id(file.check(H5Fopen(path.c_str(), write, properties.get()), ""));
     return file;
   }
   if (H5Fis_hdf5(path.c_str()) == 0) throw base::InputError("cannot read '" + path + "': not an HDF5 file");
@@ -267,16 +268,25 @@ File File::open(const std::string& path, Access access) {
   return file;
 }
 
+const Id& File::row_properties(const Shape& shape, RowStorage storage) {
+  Shape key(shape);
+  key[0] = storage.chunk_rows;
+  key.push_back(storage.compressed ? 1 : 0);
+  Id& creation = row_properties_[key];
+  if (creation.valid()) return creation;
+  creation = Id(H5Pcreate(H5P_DATASET_CREATE));
+  H5Pset_obj_track_times(creation.get(), false);
+  H5Pset_chunk(creation.get(), static_cast<int>(shape.size()), extents_of(shape, storage.chunk_rows).data());
+  if (storage.compressed) compress(creation);
+  if (!storage.compressed) H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER);  // whole chunks are written
+  return creation;
+}
+
 DataSet File::create_rows(const ChannelSpec& spec, RowStorage storage) {
   Shape shape{0};
   shape.insert(shape.end(), spec.shape.begin(), spec.shape.end());
-  const Extents chunk = extents_of(shape, storage.chunk_rows);
   const Id space = space_of(shape, extents_of(shape, H5S_UNLIMITED).data());
-  const Id creation(H5Pcreate(H5P_DATASET_CREATE));
-  H5Pset_obj_track_times(creation.get(), false);
-  H5Pset_chunk(creation.get(), static_cast<int>(shape.size()), chunk.data());
-  if (storage.compressed) compress(creation);
-  if (!storage.compressed) H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER);  // whole chunks are written
+  const Id& creation = row_properties(shape, storage);
   Id id(check(H5Dcreate2(id_.get(), spec.path.c_str(), file_type(spec.type), space.get(), links_.get(), creation.get(),
                          storage.compressed ? H5P_DEFAULT : rows_access_.get()),
               spec.path));
@@ -294,17 +304,21 @@ DataSet File::create_fixed(const FixedArray& array, bool overwritten) {
     H5Pset_chunk(creation.get(), static_cast<int>(spec.shape.size()), extents_of(spec.shape, rows).data());
     compress(creation);
   }
-  Id id(check(H5Dcreate2(id_.get(), spec.path.c_str(), file_type(array.type), space.get(), links_.get(), creation.get(),
-                         H5P_DEFAULT),
+  const hid_t on_disk = file_type(array.type);
+  Id id(check(H5Dcreate2(id_.get(), spec.path.c_str(), on_disk, space.get(), links_.get(), creation.get(), H5P_DEFAULT),
               spec.path));
-  const void* values = array.type == ValueType::float64 ? static_cast<const void*>(array.reals.data())
-                                                        : static_cast<const void*>(array.integers.data());
-  if (bytes > 0) check(H5Dwrite(id.get(), memory_type(array.type), H5S_ALL, H5S_ALL, H5P_DEFAULT, values), spec.path);
+  const hid_t type = memory_type(array.type);
+  if (bytes > 0) check(H5Dwrite(id.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values()), spec.path);
   return DataSet(std::move(id), origin_, spec.path);
 }
 
 void File::remove(const std::string& path) {
   if (contains(path)) check(H5Ldelete(id_.get(), path.c_str(), H5P_DEFAULT), path);
+}
+
+DataSet File::open_rows(const ChannelSpec& spec, RowStorage storage) const {
+  const std::int64_t access = storage.compressed ? H5P_DEFAULT : rows_access_.get();
+  return DataSet(Id(check(H5Dopen2(id_.get(), spec.path.c_str(), access), spec.path)), origin_, spec, storage);
 }
 
 DataSet File::data_set(const std::string& path) const {
@@ -324,9 +338,7 @@ std::vector<std::string> File::data_sets(const std::string& group) const {
   };
   const Id root(check(H5Gopen2(id_.get(), name_of(group), H5P_DEFAULT), group));
   check(H5Ovisit2(root.get(), H5_INDEX_NAME, H5_ITER_NATIVE, visit, &paths, H5O_INFO_BASIC), group);
-  if (!group.empty()) {
-    for (std::string& path : paths) path.insert(0, group + "/");
-  }
+  for (std::string& path : paths) path.insert(0, group.empty() ? group : group + "/");
   std::ranges::sort(paths);
   return paths;
 }
@@ -340,15 +352,13 @@ bool File::contains(const std::string& path) const {
 }
 
 void File::set_attribute(const Attribute& attribute) {
-  if (!attribute.object.empty() && !contains(attribute.object)) {
-    const Id group(check(H5Gcreate2(id_.get(), attribute.object.c_str(), links_.get(), H5P_DEFAULT, H5P_DEFAULT),
-                         attribute.object));
+  const auto& [object, name, value] = attribute;
+  if (!object.empty() && !contains(object)) {
+    const Id group(check(H5Gcreate2(id_.get(), object.c_str(), links_.get(), H5P_DEFAULT, H5P_DEFAULT), object));
   }
-  const Id owner(check(H5Oopen(id_.get(), name_of(attribute.object), H5P_DEFAULT), attribute.object));
-  if (H5Aexists(owner.get(), attribute.name.c_str()) > 0) {
-    check(H5Adelete(owner.get(), attribute.name.c_str()), attribute.object);
-  }
-  check(write_attribute(owner, attribute.name, attribute.value) ? 0 : -1, attribute.object);
+  const Id owner(check(H5Oopen(id_.get(), name_of(object), H5P_DEFAULT), object));
+  if (H5Aexists(owner.get(), name.c_str()) > 0) check(H5Adelete(owner.get(), name.c_str()), object);
+  check(write_attribute(owner, name, value) ? 0 : -1, object);
 }
 
 std::optional<AttributeValue> File::attribute(const std::string& object, const std::string& name) const {
@@ -365,28 +375,23 @@ std::vector<Attribute> File::attributes(const std::string& object) const {
   const auto visit = [](hid_t holder, const char* name, const H5A_info_t*, void* out) -> herr_t {
     const Id id(H5Aopen(holder, name, H5P_DEFAULT));
     if (!id.valid()) return -1;
-    if (auto value = read_attribute(id)) {
-      static_cast<std::vector<Attribute>*>(out)->push_back({{}, name, std::move(*value)});
-    }
+    auto value = read_attribute(id);
+    if (value) static_cast<std::vector<Attribute>*>(out)->push_back({{}, name, std::move(*value)});
     return 0;
   };
-  hsize_t position = 0;
-  check(H5Aiterate2(owner.get(), H5_INDEX_NAME, H5_ITER_INC, &position, visit, &result), object);
+  check(H5Aiterate2(owner.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, &result), object);
   for (Attribute& attribute : result) attribute.object = object;
   return result;
 }
 
-void File::start_swmr() { check(H5Fstart_swmr_write(id_.get()), ""); }
-
 void File::flush() { check(H5Fflush(id_.get(), H5F_SCOPE_GLOBAL), ""); }
-
 void File::close() {
   if (!id_.close()) fail_on(origin_, "");
 }
 
 void File::abandon() {
   void* handle = nullptr;
-  if (!id_.valid() || H5Fget_vfd_handle(id_.get(), H5P_DEFAULT, &handle) < 0) return;
+  if (in_memory_ || !id_.valid() || H5Fget_vfd_handle(id_.get(), H5P_DEFAULT, &handle) < 0) return;
   const int sink = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   ::dup2(sink, *static_cast<int*>(handle));
   ::close(sink);

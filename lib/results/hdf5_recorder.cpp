@@ -66,8 +66,7 @@ bool same_bits(const hdf5::DataSet& set, const FixedArray& array) {
   std::vector<std::int64_t> bits(count(set.shape()));
   if (bits.empty()) return true;
   set.read_rows(0, set.shape().empty() ? 1 : set.shape()[0], bits.data());
-  const void* values = array.reals.empty() ? static_cast<const void*>(array.integers.data()) : array.reals.data();
-  return std::memcmp(bits.data(), values, bits.size() * sizeof(double)) == 0;
+  return std::memcmp(bits.data(), array.values(), bits.size() * sizeof(double)) == 0;
 }
 
 }  // namespace
@@ -123,15 +122,24 @@ void Hdf5Recorder::create() {
   try {
     file_ = hdf5::File::create(output_.path);
     create_content();
-    file_.flush();
-    file_.start_swmr();
-    live_.open_to_readers(room_);
+    show();
   } catch (...) {
     drop();
     std::error_code ignored;
     std::filesystem::remove(output_.path, ignored);
     throw;
   }
+}
+
+/// Writes what was created and opens the file anew, for rows: data sets are opened when their first rows come.
+void Hdf5Recorder::show() {
+  file_.close();
+  file_ = hdf5::File::open(output_.path, hdf5::Access::append);
+  live_.open_to_readers(room_);
+}
+
+hdf5::RowStorage Hdf5Recorder::storage(const Column& column) const {
+  return storage_of(column.width, blocks()[column.block].capacity);
 }
 
 void Hdf5Recorder::create_content() {
@@ -142,31 +150,27 @@ void Hdf5Recorder::create_content() {
   }
   for (const Column& column : columns()) {
     const DeclaredChannel& channel = layout().channels[column.channel];
-    data_sets_.push_back(file_.create_rows(channel.spec, storage_of(column.width, blocks()[column.block].capacity)));
-    describe(data_sets_.back(), channel.spec.unit, channel.spec.doc);
-    if (channel.axis) data_sets_.back().add_attribute("axis", std::int64_t{1});
+    hdf5::DataSet set = file_.create_rows(channel.spec, storage(column));
+    describe(set, channel.spec.unit, channel.spec.doc);
+    if (channel.axis) set.add_attribute("axis", std::int64_t{1});
   }
+  data_sets_ = std::vector<hdf5::DataSet>(columns().size());
   for (const Attribute& attribute : layout().attributes) file_.set_attribute(attribute);
   std::vector<std::string> axes;
   for (const SeriesSpec& series : layout().series) axes.push_back(series.axis);
   CheckpointStore::create(file_, layout().checkpoint, axes);
-  checkpoints_ = *CheckpointStore::open(file_);
-  checkpoints_.order_as(layout().checkpoint, output_.path);
 }
 
 void Hdf5Recorder::resume() {
   check_layout();
-  checkpoints_ = *CheckpointStore::open(file_);
-  checkpoints_.order_as(layout().checkpoint, output_.path);
-  for (const Column& column : columns()) {
-    data_sets_.push_back(file_.data_set(layout().channels[column.channel].spec.path));
-  }
+  open_checkpoints();
+  data_sets_ = std::vector<hdf5::DataSet>(columns().size());
   try {
     cut();
     set_status(file_, running);
-    file_.flush();
-    file_.start_swmr();
-    live_.open_to_readers(room_);
+    data_sets_ = std::vector<hdf5::DataSet>(columns().size());
+    checkpoints_.reset();
+    show();
   } catch (const base::EnvironmentError& error) {
     rescue(error.what());
     throw;
@@ -202,7 +206,7 @@ void Hdf5Recorder::check_layout() const {
 
 void Hdf5Recorder::cut() {
   for (const Column& column : columns()) {
-    hdf5::DataSet& set = data_sets_[column.channel];
+    hdf5::DataSet& set = data_set_of(column);
     const auto rows = static_cast<std::size_t>(resume_rows_[column.block]);
     if (set.shape()[0] < rows) {
       throw base::InputError("'" + output_.path + "' cannot be resumed: /" + set.path() + " is too short");
@@ -212,14 +216,28 @@ void Hdf5Recorder::cut() {
   for (std::size_t s = 0; s < blocks().size(); ++s) go_on_at(s, static_cast<std::size_t>(resume_rows_[s]));
   for (const Column& column : columns()) {
     const Block& block = blocks()[column.block];
-    data_sets_[column.channel].read_rows(block.first, block.next - block.first, column.begin);
+    data_set_of(column).read_rows(block.first, block.next - block.first, column.begin);
   }
+}
+
+hdf5::DataSet& Hdf5Recorder::data_set_of(const Column& column) {
+  hdf5::DataSet& set = data_sets_[column.channel];
+  if (set.is_open()) return set;
+  const ChannelSpec& spec = layout().channels[column.channel].spec;
+  const bool as_created = output_.mode != Output::Mode::resume;
+  set = as_created ? file_.open_rows(spec, storage(column)) : file_.data_set(spec.path);
+  return set;
+}
+
+void Hdf5Recorder::open_checkpoints() {
+  checkpoints_ = CheckpointStore::open(file_);
+  checkpoints_->order_as(layout().checkpoint, output_.path);
 }
 
 void Hdf5Recorder::write_rows(const Column& column) {
   const Block& block = blocks()[column.block];
   if (block.next == block.written) return;
-  hdf5::DataSet& set = data_sets_[column.channel];
+  hdf5::DataSet& set = data_set_of(column);
   set.resize(block.next);
   if (set.storage().compressed) {
     set.write_rows(block.written, block.next - block.written,
@@ -243,7 +261,9 @@ void Hdf5Recorder::do_flush(const Checkpoint* checkpoint, std::span<const std::i
   try {
     write_and_show(false);
     write_and_show(true);
-    if (checkpoint != nullptr) checkpoints_.write(*checkpoint, checkpoint_rows);
+    if (checkpoint == nullptr) return;
+    if (!checkpoints_) open_checkpoints();
+    checkpoints_->write(*checkpoint, checkpoint_rows);
   } catch (const base::EnvironmentError& error) {
     rescue(error.what());
     throw;
@@ -253,7 +273,7 @@ void Hdf5Recorder::do_flush(const Checkpoint* checkpoint, std::span<const std::i
 void Hdf5Recorder::do_close(const Ending& ending, const Late& late) {
   try {
     data_sets_.clear();
-    checkpoints_ = {};
+    checkpoints_.reset();
     file_.close();
     end(ending, late);
   } catch (const base::EnvironmentError& error) {
@@ -280,7 +300,7 @@ void Hdf5Recorder::end(const Ending& ending, const Late& late) {
 void Hdf5Recorder::drop() {
   file_.abandon();
   data_sets_.clear();
-  checkpoints_ = {};
+  checkpoints_.reset();
   try {
     file_.close();
   } catch (const base::EnvironmentError&) {

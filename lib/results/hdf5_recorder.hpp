@@ -45,9 +45,13 @@ class Hdf5Recorder final : public Recorder {
   void open_to_resume();
   void create();
   void create_content();
+  void show();
   void resume();
   void check_layout() const;
   void cut();
+  void open_checkpoints();
+  hdf5::RowStorage storage(const Column& column) const;
+  hdf5::DataSet& data_set_of(const Column& column);
   void write_rows(const Column& column);
   void end(const Ending& ending, const Late& late);
   void drop();
@@ -56,8 +60,8 @@ class Hdf5Recorder final : public Recorder {
   Output output_;
   LiveFile live_;
   hdf5::File file_;
-  std::vector<hdf5::DataSet> data_sets_;  ///< in the order of the columns
-  CheckpointStore checkpoints_;
+  std::vector<hdf5::DataSet> data_sets_;  ///< in the order of the columns; opened by their first rows
+  std::optional<CheckpointStore> checkpoints_;
   std::optional<Checkpoint> resume_point_;
   std::vector<std::int64_t> resume_rows_;  ///< by series
   std::uint64_t room_ = 0;                 ///< bytes that a flush may need beyond the end of the file

@@ -96,6 +96,10 @@ struct FixedArray {
   ValueType type = ValueType::float64;
   std::vector<double> reals = {};
   std::vector<std::int64_t> integers = {};
+
+  const void* values() const {
+    return type == ValueType::float64 ? static_cast<const void*>(reals.data()) : integers.data();
+  }
 };
 
 /// A channel and the index of its series; the axis is the first channel of its series.

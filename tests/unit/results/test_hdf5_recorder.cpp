@@ -240,7 +240,7 @@ TEST(Hdf5Recorder, LeavesNoFileBehindIfTheStartFails) {
                     Recording recording(recorder);
                     recorder.start();
                   });
-                  return message == "cannot write '" + path + "' (/solids/cube/reference): File too large" ? 7 : 8;
+                  return message == "cannot write '" + path + "': File too large" ? 7 : 8;
                 }),
             7);
   EXPECT_FALSE(std::filesystem::exists(path));
