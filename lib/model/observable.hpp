@@ -19,7 +19,7 @@ struct NodeView {
   const Eigen::VectorXd& q;                 ///< configuration (n_q)
   const Eigen::VectorXd& v;                 ///< T rate (n_q)
   const Eigen::VectorXd& constraint_force;  ///< -G^T lambda on the right of the equation of motion (n_q)
-  const Eigen::VectorXd& multipliers;       ///< lambda of the loop-closing joints (n_c)
+  const Eigen::VectorXd& multipliers;       ///< lambda of the loop rows (n_loop_rows), of least norm
   std::span<const double> u;                ///< controls of the interval that ends here (at t_0: of the first)
 };
 

@@ -3,8 +3,8 @@
 ///
 /// With the neighbour part A of the projected tangent, loop rows B, and far couplings N between the twists t_F = T_F w
 /// of some bodies, z = N t_F,
-///     A w + B_l^T lambda + T_Fl^T z = r,   B_r w = g,   N T_Fr w - z = 0,
-/// is reduced to a dense system for y = (lambda, z): (R A^-1 C - D) y = R A^-1 r - (g, 0), with C = [B_l^T T_Fl^T],
+///     A w + B_l^T mu + T_Fl^T z = r,   B_r w = g,   N T_Fr w - z = 0,
+/// is reduced to a dense system for y = (mu, z): (R A^-1 C - D) y = R A^-1 r - (g, 0), with C = [B_l^T T_Fl^T],
 /// R = [B_r; N T_Fr], D = diag(0, -1). The work is O(bodies x border + border^3).
 #include <Eigen/LU>
 #include <algorithm>
@@ -55,9 +55,8 @@ class BorderedSolver final : public model::ProjectedSolver {
     const auto& r_frame = static_cast<const TreeFrame&>(right);
     if (!inner_->factorise(left, right, K)) return false;
     if (C_.cols() == 0) return true;
-    manifold_.project_constraints(left, B_);
-    C_.leftCols(n_c_) = B_.transpose();
-    manifold_.project_constraints(right, B_);
+    C_.leftCols(n_c_) = l_frame.loop_rows.transpose();
+    manifold_.project_constraints(right, l_frame.loop_basis, B_);
     R_.topRows(n_c_) = B_;
     far_columns(l_frame);
     C_.rightCols(T_far_.rows()) = T_far_.transpose();
@@ -81,7 +80,7 @@ class BorderedSolver final : public model::ProjectedSolver {
     return std::isfinite(pivots.maxCoeff()) && pivots.minCoeff() > 0.0;
   }
 
-  void solve(const Eigen::VectorXd& r, const Eigen::VectorXd& g, Eigen::VectorXd& w, Eigen::VectorXd& lambda) override {
+  void solve(const Eigen::VectorXd& r, const Eigen::VectorXd& g, Eigen::VectorXd& w, Eigen::VectorXd& mu) override {
     inner_->solve(r, no_rows_, w, no_rows_);
     if (C_.cols() == 0) return;
     y_.noalias() = R_ * w;
@@ -90,7 +89,7 @@ class BorderedSolver final : public model::ProjectedSolver {
     lu_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(permuted_);
     lu_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(permuted_);
     w.noalias() -= A_inverse_C_ * permuted_;
-    lambda = permuted_.head(n_c_);
+    mu = permuted_.head(n_c_);
   }
 
   std::string name() const override { return "bordered"; }

@@ -18,7 +18,6 @@ class DenseSolver final : public model::ProjectedSolver {
       : manifold_(manifold),
         n_(manifold.n_v() + manifold.n_c()),
         A_(n_, n_),
-        left_rows_(manifold.n_c(), manifold.n_v()),
         right_rows_(manifold.n_c(), manifold.n_v()),
         lu_(n_),
         unit_(Eigen::VectorXd::Zero(manifold.n_v())),
@@ -44,9 +43,9 @@ class DenseSolver final : public model::ProjectedSolver {
       scale_[k] = size > 0.0 ? 1.0 / std::sqrt(size) : 1.0;
     }
     if (manifold_.n_c() > 0) {
-      manifold_.project_constraints(left, left_rows_);
-      manifold_.project_constraints(right, right_rows_);
-      A_.topRightCorner(n_v, manifold_.n_c()) = left_rows_.transpose();
+      const auto& at = static_cast<const TreeFrame&>(left);
+      manifold_.project_constraints(right, at.loop_basis, right_rows_);
+      A_.topRightCorner(n_v, manifold_.n_c()) = at.loop_rows.transpose();
       A_.bottomLeftCorner(manifold_.n_c(), n_v) = right_rows_;
       A_.bottomRightCorner(manifold_.n_c(), manifold_.n_c()).setZero();
     }
@@ -61,7 +60,7 @@ class DenseSolver final : public model::ProjectedSolver {
     return std::isfinite(pivots.maxCoeff()) && pivots.minCoeff() > pivot_tolerance;
   }
 
-  void solve(const Eigen::VectorXd& r, const Eigen::VectorXd& g, Eigen::VectorXd& w, Eigen::VectorXd& lambda) override {
+  void solve(const Eigen::VectorXd& r, const Eigen::VectorXd& g, Eigen::VectorXd& w, Eigen::VectorXd& mu) override {
     if (n_ == 0) return;
     rhs_.head(manifold_.n_v()) = r;
     rhs_.tail(manifold_.n_c()) = g;
@@ -71,7 +70,7 @@ class DenseSolver final : public model::ProjectedSolver {
     lu_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(solution_);
     solution_.array() *= scale_.array();
     w = solution_.head(manifold_.n_v());
-    lambda = solution_.tail(manifold_.n_c());
+    mu = solution_.tail(manifold_.n_c());
   }
 
   std::string name() const override { return "dense"; }
@@ -107,7 +106,6 @@ class DenseSolver final : public model::ProjectedSolver {
   const TreeManifold& manifold_;
   int n_;
   Eigen::MatrixXd A_;
-  Eigen::MatrixXd left_rows_;
   Eigen::MatrixXd right_rows_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
   Eigen::VectorXd unit_;

@@ -1,7 +1,6 @@
 #include "multibody/multibody_observables.hpp"
 
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 
 namespace muldi::multibody {
@@ -9,9 +8,6 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-/// Singular directions of redundant loop rows, relative: far above round-off, far below what a mechanism reaches.
-constexpr double rank_tolerance = 1e-8;
 
 Vector3d angular_velocity(const Eigen::VectorXd& q, const Eigen::VectorXd& v, int body) {
   Vector3d omega = Vector3d::Zero();
@@ -84,12 +80,6 @@ JointRecords::JointRecords(const TreeManifold& manifold)
   }
   frame_.links.resize(tree_.links.size());
   frame_.twists = wrenches_;
-  loop_rows_ = manifold.loop_rows();
-  loop_row_joint_ = manifold.loop_row_joint();
-  loop_rows_.insert(loop_rows_.end(), manifold.redundant_rows().begin(), manifold.redundant_rows().end());
-  loop_row_joint_.insert(loop_row_joint_.end(), manifold.redundant_row_joint().begin(),
-                         manifold.redundant_row_joint().end());
-  multipliers_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(loop_rows_.size()));
 }
 
 std::vector<model::Observable> JointRecords::observables() {
@@ -172,33 +162,10 @@ void JointRecords::refresh(const model::NodeView& at) {
   serial_ = at.serial;
   update_frame(tree_, at.q, frame_);
   // Without the loop-closing joints, the constraint forces of a subtree are those of the one joint that carries it.
-  spread_multipliers(at);
   force_ = at.constraint_force;
-  for (std::size_t i = 0; i < loop_rows_.size(); ++i) {
-    loop_rows_[i].add_gradient(at.q, multipliers_[static_cast<Eigen::Index>(i)], force_);
-  }
+  manifold_.add_constraint_forces(at.q, 1.0, at.multipliers, force_);
   wrenches_of(tree_, frame_, force_, wrenches_);
   accumulate_wrenches(tree_, frame_, wrenches_);
-}
-
-void JointRecords::spread_multipliers(const model::NodeView& at) {
-  multipliers_.setZero();
-  multipliers_.head(at.multipliers.size()) = at.multipliers;
-  if (manifold_.redundant_rows().empty()) return;
-  Eigen::MatrixXd columns(manifold_.n_v(), multipliers_.size());  // the rows in joint space, transposed
-  Eigen::VectorXd gradient(manifold_.n_q());
-  Eigen::VectorXd column(manifold_.n_v());
-  for (std::size_t i = 0; i < loop_rows_.size(); ++i) {
-    gradient.setZero();
-    loop_rows_[i].add_gradient(at.q, 1.0, gradient);
-    manifold_.project(frame_, gradient, column);
-    columns.col(static_cast<Eigen::Index>(i)) = column;
-  }
-  const Eigen::VectorXd joint_force = columns * multipliers_;
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> least_norm;
-  least_norm.setThreshold(rank_tolerance);
-  least_norm.compute(columns);
-  multipliers_ = least_norm.solve(joint_force);
 }
 
 JointRecords::Wrench JointRecords::tree_wrench(int l) const {
@@ -213,9 +180,9 @@ JointRecords::Wrench JointRecords::cut_wrench(int j, const model::NodeView& at) 
   const Joint& joint = tree_.joints[static_cast<std::size_t>(j)];
   Wrench wrench = Wrench::Zero();
   Eigen::VectorXd force = Eigen::VectorXd::Zero(at.q.size());
-  for (std::size_t i = 0; i < loop_rows_.size(); ++i) {
-    if (loop_row_joint_[i] != j) continue;
-    loop_rows_[i].add_gradient(at.q, -multipliers_[static_cast<Eigen::Index>(i)], force);
+  for (std::size_t i = 0; i < manifold_.loop_rows().size(); ++i) {
+    if (manifold_.loop_row_joint()[i] != j) continue;
+    manifold_.loop_rows()[i].add_gradient(at.q, -at.multipliers[static_cast<Eigen::Index>(i)], force);
   }
   const bool on_ground = joint.body_b == ground;
   const int body = on_ground ? joint.body_a : joint.body_b;

@@ -31,8 +31,6 @@ class JointRecords {
   void velocity(int joint, const model::NodeView& at, std::span<double> out) const;
   void reaction(int joint, const model::NodeView& at, std::span<double> out);
   void refresh(const model::NodeView& at);
-  /// Multipliers of all loop rows, the redundant ones included: the least-norm set with the same joint forces.
-  void spread_multipliers(const model::NodeView& at);
   /// Wrench on body `to` about its centre of mass.
   Wrench tree_wrench(int link) const;
   Wrench cut_wrench(int joint, const model::NodeView& at) const;
@@ -44,9 +42,6 @@ class JointRecords {
   TreeFrame frame_;
   Twists wrenches_;
   Eigen::VectorXd force_;
-  std::vector<model::Bilinear> loop_rows_;  ///< independent rows, then redundant ones
-  std::vector<int> loop_row_joint_;
-  Eigen::VectorXd multipliers_;  ///< of loop_rows_
   long serial_ = -1;
 };
 

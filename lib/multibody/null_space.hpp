@@ -26,14 +26,18 @@ struct LinkFrame {
 
 /// T(q) of a TreeManifold; scratch twists are part of it, so projections allocate nothing.
 struct TreeFrame : model::Frame {
-  std::vector<LinkFrame> links;      ///< as KinematicTree::links
-  mutable Twists twists;             ///< (6, n_links) scratch
-  mutable Eigen::VectorXd q;         ///< (n_q) scratch of the loop rows, empty without loops
-  mutable Eigen::VectorXd gradient;  ///< (n_q)
-  mutable Eigen::VectorXd row;       ///< (n_v)
-  mutable Eigen::MatrixXd rows;      ///< (n_c, n_v)
-  mutable Eigen::ColPivHouseholderQR<Eigen::MatrixXd> loop_pivots;  ///< of rows^T
-  mutable Eigen::PartialPivLU<Eigen::MatrixXd> loop_product;        ///< of the rows at two frames
+  std::vector<LinkFrame> links;                               ///< as KinematicTree::links
+  mutable Twists twists;                                      ///< (6, n_links) scratch
+  mutable Eigen::VectorXd q;                                  ///< (n_q) scratch of the loop rows, empty without loops
+  mutable Eigen::VectorXd gradient;                           ///< (n_q)
+  mutable Eigen::VectorXd row;                                ///< (n_v)
+  Eigen::MatrixXd all_rows;                                   ///< (n_loop_rows, n_v) B in natural increments
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> loop_pivots;    ///< of all_rows
+  Eigen::VectorXd workspace;                                  ///< (n_c)
+  Eigen::MatrixXd loop_basis;                                 ///< (n_loop_rows, n_c) Z, once chosen
+  Eigen::MatrixXd loop_rows;                                  ///< (n_c, n_v) Z^T B, once chosen
+  mutable Eigen::MatrixXd other_rows;                         ///< (n_c, n_v) Z^T B at another frame
+  mutable Eigen::PartialPivLU<Eigen::MatrixXd> loop_product;  ///< of the rows at two frames
 };
 
 /// Recomputes the frame from the poses in q (directors at 12 body + 3).

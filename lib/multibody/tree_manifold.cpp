@@ -10,7 +10,7 @@
 namespace muldi::multibody {
 namespace {
 
-/// Rows of B below this fraction of the largest pivot depend on the others (numerics, 1.9).
+/// Pivots of B below this fraction of the largest belong to rows that depend on others (numerics, 1.9).
 constexpr double rank_tolerance = 1e-10;
 /// Pivots are angles or sizes of the scene. A largest one below this is round-off: the loop joins what the tree holds
 /// together already.
@@ -24,6 +24,15 @@ void add_director_rows(int body, std::vector<model::Bilinear>& rows) {
 }
 
 const TreeFrame& tree_frame(const model::Frame& frame) { return static_cast<const TreeFrame&>(frame); }
+
+/// Configuration of the bodies, for the gradients of the loop rows.
+void write_poses(const KinematicTree& tree, const TreeFrame& frame) {
+  for (std::size_t l = 0; l < tree.links.size(); ++l) {
+    const int first = 12 * tree.links[l].body;
+    frame.q.segment<3>(first) = frame.links[l].pose.position;
+    Eigen::Map<Eigen::Matrix3d>(frame.q.data() + first + 3) = frame.links[l].pose.orientation;
+  }
+}
 
 Pose pose_of(const Eigen::VectorXd& q, int body) {
   if (body == ground) return {};
@@ -56,37 +65,24 @@ TreeManifold::TreeManifold(KinematicTree tree, const std::vector<Pose>& poses, s
       row_joint_.push_back(cut);
     }
   }
-  if (!rows_.empty()) select_independent_rows();
+  if (rows_.empty()) return;
+  scale_ = rate_scale();
+  n_c_ = rank_in_scene_pose();
 }
 
-void TreeManifold::select_independent_rows() {
+int TreeManifold::rank_in_scene_pose() const {
+  if (n_v() == 0) return 0;
   Eigen::VectorXd q(n_q());
   configuration(reference_, q);
   const auto frame = make_frame();
   update(reference_, q, *frame);
-  Eigen::MatrixXd B(n_c(), n_v());
-  project_constraints(*frame, B);
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr((B * rate_scale().asDiagonal()).transpose());
-  const Eigen::Index n = std::min(B.rows(), B.cols());
-  const double largest = n > 0 ? std::max(std::abs(qr.matrixQR()(0, 0)), smallest_pivot) : 0.0;
-  Eigen::Index rank = 0;
-  while (rank < n && std::abs(qr.matrixQR()(rank, rank)) > rank_tolerance * largest) ++rank;
-  std::vector<int> kept(qr.colsPermutation().indices().data(), qr.colsPermutation().indices().data() + rank);
-  std::sort(kept.begin(), kept.end());
-  std::vector<model::Bilinear> rows;
-  std::vector<int> row_joint;
-  for (int i = 0; i < n_c(); ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    if (std::binary_search(kept.begin(), kept.end(), i)) {
-      rows.push_back(rows_[at]);
-      row_joint.push_back(row_joint_[at]);
-    } else {
-      redundant_.push_back(rows_[at]);
-      redundant_joint_.push_back(row_joint_[at]);
-    }
-  }
-  rows_ = std::move(rows);
-  row_joint_ = std::move(row_joint);
+  auto& at = static_cast<TreeFrame&>(*frame);
+  decompose_loop_rows(at);
+  const auto pivots = at.loop_pivots.matrixQR().diagonal().cwiseAbs();
+  const double largest = std::max(pivots[0], smallest_pivot);
+  int rank = 0;
+  while (rank < pivots.size() && pivots[rank] > rank_tolerance * largest) ++rank;
+  return rank;
 }
 
 Eigen::VectorXd TreeManifold::rate_scale() const {
@@ -142,8 +138,12 @@ std::unique_ptr<model::Frame> TreeManifold::make_frame() const {
     frame->q = Eigen::VectorXd::Zero(n_q());
     frame->gradient = Eigen::VectorXd::Zero(n_q());
     frame->row = Eigen::VectorXd::Zero(n_v());
-    frame->rows = Eigen::MatrixXd::Zero(n_c(), n_v());
-    frame->loop_pivots = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(n_v(), n_c());
+    frame->all_rows = Eigen::MatrixXd::Zero(n_loop_rows(), n_v());
+    frame->loop_pivots = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(n_loop_rows(), n_v());
+    frame->workspace = Eigen::VectorXd::Zero(n_c());
+    frame->loop_basis = Eigen::MatrixXd::Zero(n_loop_rows(), n_c());
+    frame->loop_rows = Eigen::MatrixXd::Zero(n_c(), n_v());
+    frame->other_rows = frame->loop_rows;
     frame->loop_product = Eigen::PartialPivLU<Eigen::MatrixXd>(n_c());
   }
   return frame;
@@ -151,6 +151,47 @@ std::unique_ptr<model::Frame> TreeManifold::make_frame() const {
 
 void TreeManifold::update(const Eigen::VectorXd&, const Eigen::VectorXd& q, model::Frame& frame) const {
   update_frame(tree_, q, static_cast<TreeFrame&>(frame));
+}
+
+void TreeManifold::decompose_loop_rows(TreeFrame& frame) const {
+  write_poses(tree_, frame);
+  for (int i = 0; i < n_loop_rows(); ++i) {
+    frame.gradient.setZero();
+    rows_[static_cast<std::size_t>(i)].add_gradient(frame.q, 1.0, frame.gradient);
+    project(frame, frame.gradient, frame.row);
+    frame.all_rows.row(i) = frame.row.cwiseProduct(scale_).transpose();
+  }
+  frame.loop_pivots.compute(frame.all_rows);
+}
+
+model::LoopRank TreeManifold::choose_loop_rows(model::Frame& frame) const {
+  if (rows_.empty() || n_v() == 0) return {};
+  auto& at = static_cast<TreeFrame&>(frame);
+  decompose_loop_rows(at);
+  const Eigen::MatrixXd& qr = at.loop_pivots.matrixQR();
+  const Eigen::Index n_rows = qr.rows();
+  // Z: the first columns of Q; applied one by one, as Eigen's blocks of reflectors ask for memory.
+  at.loop_basis.setIdentity();
+  for (Eigen::Index k = n_c_ - 1; k >= 0; --k) {
+    at.loop_basis.bottomRightCorner(n_rows - k, n_c_ - k)
+        .applyHouseholderOnTheLeft(qr.col(k).tail(n_rows - k - 1), at.loop_pivots.hCoeffs()[k], at.workspace.data());
+  }
+  // Z^T B: the first rows of R.
+  at.loop_rows.setZero();
+  for (Eigen::Index j = 0; j < qr.cols(); ++j) {
+    const Eigen::Index rate = at.loop_pivots.colsPermutation().indices()[j];
+    const Eigen::Index n = std::min<Eigen::Index>(j + 1, n_c_);
+    at.loop_rows.col(rate).head(n) = qr.col(j).head(n) / scale_[rate];
+  }
+  model::LoopRank rank;
+  const double largest = std::abs(qr(0, 0));
+  if (n_c_ > 0) rank.regularity = largest > 0.0 ? std::abs(qr(n_c_ - 1, n_c_ - 1)) / largest : 0.0;
+  if (n_c_ < std::min(n_rows, qr.cols())) rank.excess = std::abs(qr(n_c_, n_c_));
+  return rank;
+}
+
+const Eigen::MatrixXd& TreeManifold::loop_basis(const model::Frame& frame) const {
+  return tree_frame(frame).loop_basis;
 }
 
 void TreeManifold::project(const model::Frame& frame, const Eigen::VectorXd& f, Eigen::VectorXd& r) const {
@@ -181,7 +222,7 @@ void TreeManifold::add_constraint_forces(const Eigen::VectorXd& q, double factor
 
 double TreeManifold::violation(const Eigen::VectorXd& q) const {
   double largest = 0.0;
-  for (const auto* rows : {&tree_rows_, &rows_, &redundant_}) {
+  for (const auto* rows : {&tree_rows_, &rows_}) {
     for (const model::Bilinear& row : *rows) largest = std::max(largest, std::abs(row.value(q)));
   }
   return largest;
@@ -203,18 +244,17 @@ void TreeManifold::project_tangent(const model::Frame& left, const model::Frame&
   }
 }
 
-void TreeManifold::project_constraints(const model::Frame& frame, Eigen::MatrixXd& B) const {
-  if (rows_.empty()) return;
+void TreeManifold::project_constraints(const model::Frame& frame, const Eigen::MatrixXd& Z, Eigen::MatrixXd& B) const {
+  if (Z.cols() == 0) return;
   const TreeFrame& at = tree_frame(frame);
-  for (std::size_t l = 0; l < tree_.links.size(); ++l) {
-    at.q.segment<3>(12 * tree_.links[l].body) = at.links[l].pose.position;
-    Eigen::Map<Eigen::Matrix3d>(at.q.data() + 12 * tree_.links[l].body + 3) = at.links[l].pose.orientation;
-  }
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
+  write_poses(tree_, at);
+  for (Eigen::Index k = 0; k < Z.cols(); ++k) {
     at.gradient.setZero();
-    rows_[i].add_gradient(at.q, 1.0, at.gradient);
+    for (Eigen::Index i = 0; i < Z.rows(); ++i) {
+      if (Z(i, k) != 0.0) rows_[static_cast<std::size_t>(i)].add_gradient(at.q, Z(i, k), at.gradient);
+    }
     project(frame, at.gradient, at.row);
-    B.row(static_cast<Eigen::Index>(i)) = at.row.transpose();
+    B.row(k) = at.row.transpose();
   }
 }
 
@@ -252,22 +292,11 @@ std::unique_ptr<model::ProjectedSolver> TreeManifold::make_solver(const math::Bl
   return make_projected_solver(*this, pattern, kind);
 }
 
-double TreeManifold::loop_regularity(const model::Frame& frame) const {
-  if (rows_.empty()) return 1.0;
-  const TreeFrame& at = tree_frame(frame);
-  project_constraints(frame, at.rows);
-  at.loop_pivots.compute(at.rows.transpose());
-  const auto& pivots = at.loop_pivots.matrixQR();
-  return std::abs(pivots(n_c() - 1, n_c() - 1)) / std::abs(pivots(0, 0));
-}
-
 bool TreeManifold::loops_cross(const model::Frame& from, const model::Frame& to) const {
-  if (rows_.empty()) return false;
+  if (n_c_ == 0) return false;
   const TreeFrame& begin = tree_frame(from);
-  const TreeFrame& end = tree_frame(to);
-  project_constraints(from, begin.rows);
-  project_constraints(to, end.rows);
-  begin.loop_product.compute(begin.rows.lazyProduct(end.rows.transpose()));
+  project_constraints(to, begin.loop_basis, begin.other_rows);
+  begin.loop_product.compute(begin.loop_rows.lazyProduct(begin.other_rows.transpose()));
   return begin.loop_product.determinant() < 0.0;
 }
 

@@ -27,7 +27,7 @@ CheckpointWriter::CheckpointWriter(const model::Manifold& manifold, std::size_t 
   checkpoint_.reals = {{"x", zeros(manifold.n_x())},
                        {"p", zeros(manifold.n_q())},
                        {"increment", zeros(manifold.n_v())},
-                       {"multipliers", zeros(manifold.n_c())},
+                       {"multipliers", zeros(manifold.n_loop_rows())},
                        {"ledger", zeros(4)},
                        {"residual", zeros(1)},
                        {"row", std::vector<double>(n_row, 0.0)}};
@@ -68,7 +68,7 @@ variational::State state_of(const results::Checkpoint& checkpoint, const scene::
   state.increment = vector_of(checkpoint.real("increment"));
   state.multipliers = vector_of(checkpoint.real("multipliers"));
   if (state.x.size() != manifold.n_x() || state.p.size() != manifold.n_q() ||
-      state.increment.size() != manifold.n_v() || state.multipliers.size() != manifold.n_c()) {
+      state.increment.size() != manifold.n_v() || state.multipliers.size() != manifold.n_loop_rows()) {
     throw base::InputError({scene::error_at(
         scene.initial.from.origin, "the record holds the state of another system: its bodies or joints differ")});
   }

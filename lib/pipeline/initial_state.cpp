@@ -49,17 +49,27 @@ class InitialConditions {
   void move_to(const Eigen::VectorXd& x) {
     manifold_.configuration(x, q_);
     manifold_.update(x, q_, *frame_);
+    manifold_.choose_loop_rows(*frame_);
   }
 
-  /// Rows of the loops with their violation as value.
+  /// Independent rows of the loops with their violation as value.
   std::vector<Condition> loops() const {
     Eigen::MatrixXd B(manifold_.n_c(), manifold_.n_v());
-    Eigen::VectorXd g(manifold_.n_c());
-    manifold_.project_constraints(*frame_, B);
-    manifold_.constraints(q_, g);
+    Eigen::VectorXd gaps(manifold_.n_loop_rows());
+    const Eigen::MatrixXd& Z = manifold_.loop_basis(*frame_);
+    manifold_.project_constraints(*frame_, Z, B);
+    manifold_.constraints(q_, gaps);
+    const Eigen::VectorXd g = Z.transpose() * gaps;
     std::vector<Condition> conditions;
     for (Eigen::Index i = 0; i < B.rows(); ++i) conditions.push_back({.row = B.row(i).transpose(), .value = -g[i]});
     return conditions;
+  }
+
+  /// Largest violation of a loop row.
+  double gap() const {
+    Eigen::VectorXd gaps(manifold_.n_loop_rows());
+    manifold_.constraints(q_, gaps);
+    return gaps.lpNorm<Eigen::Infinity>();
   }
 
   /// Wanted coordinates of loop-closing joints: what is missing.
@@ -173,7 +183,7 @@ void close_loops(const scene::Scene& scene, const build::BuiltModel& built, cons
     Eigen::MatrixXd rows = rows_of(wanted, manifold.n_v()) * scale.asDiagonal();
     Eigen::VectorXd missing(rows.rows());
     for (std::size_t i = 0; i < wanted.size(); ++i) missing[static_cast<Eigen::Index>(i)] = wanted[i].value;
-    gap = missing.lpNorm<Eigen::Infinity>();
+    gap = std::max(conditions.gap(), missing.tail(missing.size() - manifold.n_c()).lpNorm<Eigen::Infinity>());
     if (gap <= closing_goal) return;
     for (std::size_t k = 0; k < held.size(); ++k) {
       if (held[k]) rows.col(static_cast<Eigen::Index>(k)).setZero();
@@ -209,6 +219,7 @@ Eigen::VectorXd rates_of_momentum(const scene::Scene& scene, const build::BuiltM
   manifold.configuration(x, q);
   const auto frame = manifold.make_frame();
   manifold.update(x, q, *frame);
+  manifold.choose_loop_rows(*frame);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(manifold.n_q());
   std::vector<double> u(built.model->controls.size());
   built.model->evaluate_controls(0.0, u);
@@ -216,8 +227,8 @@ Eigen::VectorXd rates_of_momentum(const scene::Scene& scene, const build::BuiltM
   built.model->tangent({.q0 = q, .q1 = q, .q = q, .v = zero, .u = u}, model::TangentWeights::mass(), M);
   const auto solver = manifold.make_solver(*built.model->pattern, "auto");
   Eigen::VectorXd rates = Eigen::VectorXd::Zero(manifold.n_v());
-  Eigen::VectorXd lambda = Eigen::VectorXd::Zero(manifold.n_c());
-  if (solver->factorise(*frame, *frame, M)) solver->solve(m, Eigen::VectorXd::Zero(manifold.n_c()), rates, lambda);
+  Eigen::VectorXd mu = Eigen::VectorXd::Zero(manifold.n_c());
+  if (solver->factorise(*frame, *frame, M)) solver->solve(m, Eigen::VectorXd::Zero(manifold.n_c()), rates, mu);
   return rates;
 }
 
@@ -247,7 +258,7 @@ Eigen::VectorXd initial_coordinates(const scene::Scene& scene, const build::Buil
 Outcome settle(const scene::Scene& scene, const build::BuiltModel& built, Eigen::VectorXd& x) {
   std::vector<double> u(built.model->controls.size());
   built.model->evaluate_controls(0.0, u);
-  statics::StaticState state{.x = x, .multipliers = Eigen::VectorXd::Zero(built.manifold->n_c())};
+  statics::StaticState state{.x = x, .multipliers = Eigen::VectorXd::Zero(built.manifold->n_loop_rows())};
   statics::SweepOptions options{.from = 0.0, .to = 1.0, .steps = 4};
   options.equilibrium.tolerance = scene.solver.tolerance;
   statics::Sweep sweep(*built.model, std::vector<double>(u.size(), 0.0), u, options);
@@ -324,7 +335,7 @@ Outcome initial_state(const scene::Scene& scene, const build::BuiltModel& built,
   state.step = 0;
   state.t = 0.0;
   state.increment = (scene.dynamics ? scene.dynamics->step : 0.0) * rates;
-  state.multipliers = Eigen::VectorXd::Zero(manifold.n_c());
+  state.multipliers = Eigen::VectorXd::Zero(manifold.n_loop_rows());
   return {};
 }
 

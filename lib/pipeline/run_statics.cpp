@@ -18,7 +18,7 @@ StaticsRun::StaticsRun(const scene::Scene& scene, const build::BuiltModel& built
 
 void StaticsRun::prepare() {
   state_.x = initial_coordinates(scene_, built_);
-  state_.multipliers = Eigen::VectorXd::Zero(built_.manifold->n_c());
+  state_.multipliers = Eigen::VectorXd::Zero(built_.manifold->n_loop_rows());
 }
 
 void StaticsRun::record(const statics::SweepPoint& point) {

@@ -24,8 +24,8 @@ std::string chains_text(const scene::Scene& scene, const build::BuiltModel& buil
   for (const int cut : tree.cut_joints) {
     text += base::format("  cut joint: {}\n", tree.joints[static_cast<std::size_t>(cut)].name);
   }
-  if (!built.manifold->redundant_rows().empty()) {
-    text += base::format("  redundant loop constraints left out: {}\n", built.manifold->redundant_rows().size());
+  if (const int n_redundant = built.manifold->n_loop_rows() - built.manifold->n_c(); n_redundant > 0) {
+    text += base::format("  redundant loop constraints left out: {}\n", n_redundant);
   }
   return text;
 }

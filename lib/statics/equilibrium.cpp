@@ -33,12 +33,13 @@ EquilibriumSolver::EquilibriumSolver(const model::Model& model, EquilibriumOptio
       zero_(q_),
       bracket_(q_),
       r_(Eigen::VectorXd::Zero(manifold_.n_v())),
+      gaps_(Eigen::VectorXd::Zero(manifold_.n_loop_rows())),
       g_(Eigen::VectorXd::Zero(manifold_.n_c())),
       scale_(manifold_.rate_scale()),
       A_(manifold_.n_v(), manifold_.n_v()),
       B_(manifold_.n_c(), manifold_.n_v()),
       dw_(r_),
-      dlambda_(g_) {
+      dlambda_(gaps_) {
   forces_.force = q_;
   forces_.momentum = q_;
 }
@@ -51,13 +52,15 @@ model::IntervalPoint EquilibriumSolver::point(const StaticState& state, std::spa
 void EquilibriumSolver::evaluate(const StaticState& state, std::span<const double> u) {
   manifold_.configuration(state.x, q_);
   manifold_.update(state.x, q_, *frame_);
+  manifold_.choose_loop_rows(*frame_);
   model_.forces(point(state, u), forces_);
   // The largest force seen: at equilibrium the forces on a single unknown cancel, and their sum measures nothing.
   terms_ = std::max(terms_, forces_.force.lpNorm<Eigen::Infinity>());
   bracket_ = forces_.force;
   manifold_.add_constraint_forces(q_, -1.0, state.multipliers, bracket_);
   manifold_.project(*frame_, bracket_, r_);
-  manifold_.constraints(q_, g_);
+  manifold_.constraints(q_, gaps_);
+  g_ = loop_basis().transpose() * gaps_;
 }
 
 void EquilibriumSolver::linearise(const StaticState& state, std::span<const double> u) {
@@ -65,7 +68,7 @@ void EquilibriumSolver::linearise(const StaticState& state, std::span<const doub
   model_.tangent(point(state, u), model::TangentWeights::stiffness(), K_);
   manifold_.project_tangent(*frame_, *frame_, K_, A_);
   manifold_.add_curvature(*frame_, bracket_, state.multipliers, A_);
-  manifold_.project_constraints(*frame_, B_);
+  manifold_.project_constraints(*frame_, loop_basis(), B_);
 }
 
 Eigen::VectorXd EquilibriumSolver::load_rate(std::span<const double> u, std::span<const double> du) {
@@ -95,6 +98,10 @@ Stability EquilibriumSolver::stability() const {
   return values[0] > 0.0 ? Stability::stable : Stability::unstable;
 }
 
+Eigen::VectorXd EquilibriumSolver::least_norm(const Eigen::VectorXd& multipliers) const {
+  return loop_basis() * (loop_basis().transpose() * multipliers);
+}
+
 void EquilibriumSolver::newton_increment() {
   // In dimensionless increments; a shift makes the tangent positive where it is not, so that steps go downhill.
   const Eigen::Index n_v = manifold_.n_v();
@@ -120,7 +127,7 @@ void EquilibriumSolver::newton_increment() {
   rhs << scale_.cwiseProduct(r_), -g_;
   const Eigen::VectorXd solution = kkt.partialPivLu().solve(rhs);
   dw_ = scale_.cwiseProduct(solution.head(n_v));
-  dlambda_ = solution.tail(n_c);
+  dlambda_ = loop_basis() * solution.tail(n_c);
 }
 
 double EquilibriumSolver::line_search(const StaticState& start, StaticState& trial, std::span<const double> u,
@@ -173,6 +180,7 @@ EquilibriumReport EquilibriumSolver::solve(StaticState& state, std::span<const d
   if (!report.converged) return report;
   linearise(at, u);
   report.stability = stability();
+  at.multipliers = least_norm(at.multipliers);
   state = at;
   return report;
 }

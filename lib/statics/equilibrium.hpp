@@ -21,7 +21,7 @@ struct EquilibriumOptions {
 /// A configuration at rest with the multipliers of the loops.
 struct StaticState {
   Eigen::VectorXd x;            ///< (n_x)
-  Eigen::VectorXd multipliers;  ///< (n_c)
+  Eigen::VectorXd multipliers;  ///< (n_loop_rows), of least norm
 };
 
 enum class Stability {
@@ -47,16 +47,19 @@ class EquilibriumSolver {
 
   /// Evaluates residual, constraints and tangent at a state.
   void linearise(const StaticState& state, std::span<const double> u);
-  const Eigen::VectorXd& residual() const { return r_; }          ///< T^T (F - G^T lambda) (n_v)
-  const Eigen::VectorXd& gaps() const { return g_; }              ///< g (n_c)
-  const Eigen::MatrixXd& tangent() const { return A_; }           ///< (n_v, n_v)
-  const Eigen::MatrixXd& loop_rows() const { return B_; }         ///< (n_c, n_v)
-  const Eigen::VectorXd& configuration() const { return q_; }     ///< (n_q)
-  const Eigen::VectorXd& force() const { return forces_.force; }  ///< F (n_q)
-  const Eigen::VectorXd& scale() const { return scale_; }         ///< natural size of increments (n_v)
+  const Eigen::VectorXd& residual() const { return r_; }   ///< T^T (F - G^T lambda) (n_v)
+  const Eigen::VectorXd& gaps() const { return g_; }       ///< Z^T g (n_c), Z chosen at the linearised state
+  const Eigen::MatrixXd& tangent() const { return A_; }    ///< (n_v, n_v)
+  const Eigen::MatrixXd& loop_rows() const { return B_; }  ///< Z^T G T (n_c, n_v)
+  const Eigen::MatrixXd& loop_basis() const { return manifold_.loop_basis(*frame_); }  ///< Z (n_loop_rows, n_c)
+  const Eigen::VectorXd& configuration() const { return q_; }                          ///< (n_q)
+  const Eigen::VectorXd& force() const { return forces_.force; }                       ///< F (n_q)
+  const Eigen::VectorXd& scale() const { return scale_; }  ///< natural size of increments (n_v)
   /// T^T sum_c dF/du_c du_c (n_v) at the linearised state.
   Eigen::VectorXd load_rate(std::span<const double> u, std::span<const double> du);
   Stability stability() const;
+  /// Multipliers of least norm with the same constraint force at the linearised state.
+  Eigen::VectorXd least_norm(const Eigen::VectorXd& multipliers) const;
 
  private:
   model::IntervalPoint point(const StaticState& state, std::span<const double> u) const;
@@ -75,7 +78,8 @@ class EquilibriumSolver {
   Eigen::VectorXd zero_;
   Eigen::VectorXd bracket_;
   Eigen::VectorXd r_;
-  Eigen::VectorXd g_;
+  Eigen::VectorXd gaps_;  // of all loop rows
+  Eigen::VectorXd g_;     // Z^T gaps
   Eigen::VectorXd scale_;
   Eigen::MatrixXd A_;
   Eigen::MatrixXd B_;

@@ -151,7 +151,7 @@ bool Sweep::corrector(StaticState& at, double& load, const Eigen::VectorXd& tang
                       EquilibriumReport& report) {
   const Eigen::VectorXd& scale = solver_.scale();
   const Eigen::Index n_v = scale.size();
-  const Eigen::Index n_c = at.multipliers.size();
+  const Eigen::Index n_c = solver_.gaps().size();
   const double range = options_.to - options_.from;
   const StaticState start = at;
   const double start_load = load;
@@ -175,10 +175,11 @@ bool Sweep::corrector(StaticState& at, double& load, const Eigen::VectorXd& tang
     if (!std::isfinite(size) || size > 1.0) return false;
     model_.manifold->retract(at.x, scale.cwiseProduct(increment.head(n_v)), at.x);
     load += range * increment[n_v];
-    at.multipliers += increment.tail(n_c);
+    at.multipliers += solver_.loop_basis() * increment.tail(n_c);
     if (size <= options_.equilibrium.tolerance) {
       controls_at(load);
       solver_.linearise(at, u_);
+      at.multipliers = solver_.least_norm(at.multipliers);
       report.converged = true;
       report.stability = solver_.stability();
       return true;

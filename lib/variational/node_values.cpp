@@ -9,7 +9,8 @@ NodeEvaluator::NodeEvaluator(const model::Model& model, const std::string& linea
       M_(*model.pattern),
       r_(Eigen::VectorXd::Zero(model.manifold->n_v())),
       zero_c_(Eigen::VectorXd::Zero(model.manifold->n_c())),
-      lambda_(zero_c_),
+      mu_(zero_c_),
+      lambda_(Eigen::VectorXd::Zero(model.manifold->n_loop_rows())),
       zero_q_(Eigen::VectorXd::Zero(model.manifold->n_q())),
       scratch_(model.parts().size()) {
   forces_.force = zero_q_;
@@ -30,12 +31,14 @@ bool NodeEvaluator::evaluate(const State& state, std::span<const double> u_befor
   out.momentum.resize(manifold.n_q());
   out.parts.resize(scratch_.size());
   manifold.update(state.x, state.q, *frame_);
+  manifold.choose_loop_rows(*frame_);
   model_.tangent({.q0 = state.q, .q1 = state.q, .q = state.q, .v = zero_q_, .u = u_before},
                  model::TangentWeights::mass(), M_);
   if (manifold.n_v() > 0) {
     if (!solver_->factorise(*frame_, *frame_, M_)) return false;
     manifold.project(*frame_, state.p, r_);
-    solver_->solve(r_, zero_c_, out.rate, lambda_);
+    solver_->solve(r_, zero_c_, out.rate, mu_);
+    lambda_.noalias() = manifold.loop_basis(*frame_) * mu_;
   }
   out.v.setZero();
   manifold.lift(*frame_, out.rate, out.v);

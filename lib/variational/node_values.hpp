@@ -29,7 +29,7 @@ class NodeEvaluator {
   /// False if the mass matrix is singular on the free motions.
   bool evaluate(const State& state, std::span<const double> u_before, std::span<const double> u_after, NodeValues& out);
 
-  /// Multipliers of the loop rows that make the last momentum consistent (n_c), an impulse.
+  /// Multipliers of the loop rows that make the last momentum consistent (n_loop_rows), an impulse of least norm.
   const Eigen::VectorXd& loop_impulse() const { return lambda_; }
 
   /// Electric enthalpy alone, for the work of control jumps.
@@ -46,6 +46,7 @@ class NodeEvaluator {
   model::IntervalForces forces_;
   Eigen::VectorXd r_;
   Eigen::VectorXd zero_c_;
+  Eigen::VectorXd mu_;
   Eigen::VectorXd lambda_;
   Eigen::VectorXd zero_q_;
   std::vector<model::Energy> scratch_;

@@ -14,7 +14,7 @@ struct State {
   Eigen::VectorXd q;            ///< configuration (n_q), rebuilt from x
   Eigen::VectorXd p;            ///< D2 L_d + f+ of the last interval (n_q); M v at t = 0
   Eigen::VectorXd increment;    ///< last minimal increment (n_v), the predictor
-  Eigen::VectorXd multipliers;  ///< lambda of the last node (n_c)
+  Eigen::VectorXd multipliers;  ///< lambda of the last node (n_loop_rows), of least norm
 };
 
 /// How a solver ended; the names are those of the result file (scene format, section 4).

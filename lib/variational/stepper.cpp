@@ -30,12 +30,13 @@ Stepper::Stepper(const model::Model& model, double dt, StepOptions options)
   }
   for (Eigen::VectorXd* in_v : {&r_, &dw_}) *in_v = Eigen::VectorXd::Zero(manifold_.n_v());
   for (Eigen::VectorXd* in_c : {&g_, &mu_, &dmu_}) *in_c = Eigen::VectorXd::Zero(manifold_.n_c());
+  for (Eigen::VectorXd* of_rows : {&gaps_, &lambda_}) *of_rows = Eigen::VectorXd::Zero(manifold_.n_loop_rows());
   x_ = Eigen::VectorXd::Zero(manifold_.n_x());
   x_before_ = x_;
   const Eigen::VectorXd reference = manifold_.reference();
   manifold_.configuration(reference, q_);
   manifold_.update(reference, q_, *frame_n_);
-  reference_regularity_ = manifold_.loop_regularity(*frame_n_);
+  reference_regularity_ = manifold_.choose_loop_rows(*frame_n_).regularity;
 }
 
 model::IntervalPoint Stepper::point(const State& state, std::span<const double> u) const {
@@ -61,9 +62,12 @@ double Stepper::residual_of(const State& state) {
   bracket_ = state.p + 0.5 * dt_ * forces_.force - forces_.momentum;
   const double terms = std::max({state.p.lpNorm<Eigen::Infinity>(), 0.5 * dt_ * forces_.force.lpNorm<Eigen::Infinity>(),
                                  forces_.momentum.lpNorm<Eigen::Infinity>()});
-  manifold_.add_constraint_forces(state.q, -1.0, mu_, bracket_);
+  const Eigen::MatrixXd& Z = manifold_.loop_basis(*frame_n_);
+  lambda_.noalias() = Z * mu_;
+  manifold_.add_constraint_forces(state.q, -1.0, lambda_, bracket_);
   manifold_.project(*frame_n_, bracket_, r_);
-  manifold_.constraints(q_, g_);
+  manifold_.constraints(q_, gaps_);
+  g_.noalias() = Z.transpose() * gaps_;
   return terms > 0.0 ? r_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>() / terms : 0.0;
 }
 
@@ -117,18 +121,29 @@ bool Stepper::newton(const State& state, std::span<const double> u, StepReport& 
   return false;
 }
 
+bool Stepper::choose_loop_rows(StepReport& report) {
+  const model::LoopRank rank = manifold_.choose_loop_rows(*frame_n_);
+  report.loop_regularity = rank.regularity / reference_regularity_;
+  if (report.loop_regularity < options_.loop_limit) {
+    report.sentence = "the loop constraints lose rank: the mechanism is at a change point";
+  } else if (rank.excess > options_.loop_limit) {
+    report.sentence =
+        "the loop constraints have a higher rank than in the scene pose, which is a change point of the mechanism: "
+        "give another scene pose";
+  } else {
+    return true;
+  }
+  report.status = Status::rank_change;
+  return false;
+}
+
 StepReport Stepper::advance(State& state, std::span<const double> u) {
   StepReport report;
   manifold_.update(state.x, state.q, *frame_n_);
-  report.loop_regularity = manifold_.loop_regularity(*frame_n_) / reference_regularity_;
-  if (report.loop_regularity < options_.loop_limit) {
-    report.status = Status::rank_change;
-    report.sentence = "the loop constraints lose rank: the mechanism is at a change point";
-    return report;
-  }
+  if (!choose_loop_rows(report)) return report;
   const double weight = state.step == 0 ? 0.5 * dt_ : dt_;
   manifold_.retract(state.x, state.increment, x_);
-  mu_ = weight * state.multipliers;
+  mu_.noalias() = weight * manifold_.loop_basis(*frame_n_).transpose() * state.multipliers;
   manifold_.configuration(x_, q_);
   bool converged = model_.inadmissible(q_).empty() && newton(state, u, report);
   if (!converged) {
@@ -173,7 +188,7 @@ void Stepper::finish(State& state, std::span<const double> u, StepReport& report
   constraint_force_ = -(state.p + 0.5 * dt_ * forces_.force - forces_.momentum) / weight;
   report.work = model_.work(point(state, u));
   manifold_.difference(state.x, x_, state.increment);
-  state.multipliers = mu_ / weight;
+  state.multipliers = lambda_ / weight;
   carry_residual();
   state.p = forces_.momentum + 0.5 * dt_ * forces_.force + bracket_;
   state.x = x_;

@@ -2,10 +2,11 @@
 /// One step of the midpoint variational integrator in momentum form, solved on the constraint manifold
 /// (numerics, 1.5, 1.8).
 ///
-///     T(q_n)^T [ p_n + dt/2 F - pi - G_c(q_n)^T mu ] = 0,   g_c(q_{n+1}) = 0,
+///     T(q_n)^T [ p_n + dt/2 F - pi - G_c(q_n)^T Z mu ] = 0,   Z^T g_c(q_{n+1}) = 0,
 ///     F = dL/dq + f,  pi = dL/dv  at  q = (q_n + q_{n+1})/2,  v = (q_{n+1} - q_n)/dt,
 ///     p_{n+1} = pi + dt/2 F,
-/// with the unknown q_{n+1} moved along minimal increments and mu = dt lambda_n (dt/2 at the first node).
+/// with the unknown q_{n+1} moved along minimal increments, Z the basis of the loop rows at q_n, and
+/// Z mu = dt lambda_n (dt/2 at the first node).
 #include <memory>
 #include <span>
 
@@ -21,7 +22,7 @@ struct StepOptions {
   double warn_rotation = 0.5;    ///< rad a step
   double refuse_rotation = 2.0;  ///< rad a step
   double loop_warning = 1e-2;    ///< loop regularity, relative to that at the start
-  double loop_limit = 1e-6;
+  double loop_limit = 1e-6;      ///< below it, or with a redundant pivot above it, the rank is another
 };
 
 /// What one step reports.
@@ -57,6 +58,8 @@ class Stepper {
   void evaluate(const State& state, std::span<const double> u);
   model::IntervalPoint point(const State& state, std::span<const double> u) const;
   double residual_of(const State& state);
+  /// Chooses the loop rows at frame_n_; false where their rank is not that of the scene pose.
+  bool choose_loop_rows(StepReport& report);
   bool newton(const State& state, std::span<const double> u, StepReport& report);
   void damp_until_admissible(const State& state, StepReport& report);
   /// Sets bracket_ to the momentum that the rounded positions cannot take up, K T w with T_n^T K T w = r. As a part of
@@ -78,11 +81,13 @@ class Stepper {
   Eigen::VectorXd q_mid_;
   Eigen::VectorXd v_;
   Eigen::VectorXd x_before_;  // the iterate before the current increment
-  Eigen::VectorXd bracket_;   // p_n + dt/2 F - pi - G^T mu
+  Eigen::VectorXd bracket_;   // p_n + dt/2 F - pi - G^T Z mu
   Eigen::VectorXd r_;
   Eigen::VectorXd scale_;
-  Eigen::VectorXd g_;
-  Eigen::VectorXd mu_;
+  Eigen::VectorXd gaps_;    // g of all loop rows
+  Eigen::VectorXd g_;       // Z^T gaps
+  Eigen::VectorXd mu_;      // multipliers of the combined rows
+  Eigen::VectorXd lambda_;  // Z mu
   Eigen::VectorXd dw_;
   Eigen::VectorXd dmu_;
   Eigen::VectorXd constraint_force_;

@@ -32,7 +32,7 @@ struct NodeRecord {
   const NodeValues& values;
   const Ledger& ledger;
   const Eigen::VectorXd& constraint_force;  ///< -G^T lambda (n_q)
-  const Eigen::VectorXd& multipliers;       ///< (n_c)
+  const Eigen::VectorXd& multipliers;       ///< (n_loop_rows)
   std::span<const double> u;                ///< of the interval that ends here (of the first one at t = 0)
   const StepReport& report;                 ///< of the step that ends here
 };

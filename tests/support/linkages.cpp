@@ -36,6 +36,21 @@ Vector3d corner(const Vector3d& a, const Vector3d& b, double from_a, double from
   return a + along * x + height * Vector3d::UnitZ().cross(x);
 }
 
+// Denavit-Hartenberg of Bennett's linkage: turn theta about z, go `length` along x, twist about x; lengths a, b, a, b
+// and twists alpha, beta with sin(alpha)/a = sin(beta)/b.
+constexpr double bennett_a = 60.0;
+constexpr double bennett_b = 100.0;
+constexpr double bennett_alpha = 0.5;
+const double bennett_beta = std::asin(bennett_b * std::sin(bennett_alpha) / bennett_a);
+
+/// tan(theta_1/2) tan(theta_2/2) = sin((beta + alpha)/2)/sin((beta - alpha)/2), theta_3 = -theta_1, theta_4 = -theta_2.
+std::array<double, 4> bennett_angles(double first) {
+  const double product =
+      std::sin(0.5 * (bennett_beta + bennett_alpha)) / std::sin(0.5 * (bennett_beta - bennett_alpha));
+  const double second = 2.0 * std::atan(product / std::tan(0.5 * first));
+  return {first, second, -first, -second};
+}
+
 }  // namespace
 
 RigidSystem four_bar(const FourBar& form, double gravity) {
@@ -75,16 +90,7 @@ RigidSystem slider_crank(double gravity) {
 RigidSystem bennett(double first_angle) {
   RigidSystem system;
   system.length = 100.0;
-  // Denavit-Hartenberg: turn theta about z, go `length` along x, twist about x; lengths a, b, a, b and twists alpha,
-  // beta with sin(alpha)/a = sin(beta)/b; tan(theta_1/2) tan(theta_2/2) = sin((beta + alpha)/2)/sin((beta - alpha)/2),
-  // theta_3 = -theta_1, theta_4 = -theta_2.
-  const double a = 60.0;
-  const double b = 100.0;
-  const double alpha = 0.5;
-  const double beta = std::asin(b * std::sin(alpha) / a);
-  const double second_angle =
-      2.0 * std::atan(std::sin(0.5 * (beta + alpha)) / std::sin(0.5 * (beta - alpha)) / std::tan(0.5 * first_angle));
-  const std::array<double, 4> angles{first_angle, second_angle, -first_angle, -second_angle};
+  const std::array<double, 4> angles = bennett_angles(first_angle);
   std::array<Vector3d, 5> points;
   std::array<Vector3d, 5> axes;
   Matrix3d R = Matrix3d::Identity();
@@ -92,8 +98,8 @@ RigidSystem bennett(double first_angle) {
   axes[0] = R.col(2);
   for (std::size_t k = 0; k < 4; ++k) {
     R = R * math::axis_rotation(2, angles[k]);
-    points[k + 1] = points[k] + (k % 2 == 0 ? a : b) * R.col(0);
-    R = R * math::axis_rotation(0, k % 2 == 0 ? alpha : beta);
+    points[k + 1] = points[k] + (k % 2 == 0 ? bennett_a : bennett_b) * R.col(0);
+    R = R * math::axis_rotation(0, k % 2 == 0 ? bennett_alpha : bennett_beta);
     axes[k + 1] = R.col(2);
   }
   // Ground is the link from points[0] to points[1].
@@ -106,12 +112,28 @@ RigidSystem bennett(double first_angle) {
   return system;
 }
 
+Eigen::VectorXd bennett_coordinates(const multibody::TreeManifold& manifold, double scene_angle, double first_angle) {
+  const std::array<double, 4> in_scene = bennett_angles(scene_angle);
+  const std::array<double, 4> now = bennett_angles(first_angle);
+  Eigen::VectorXd x = manifold.reference();
+  for (const multibody::TreeLink& link : manifold.tree().links) {
+    const auto k = static_cast<std::size_t>((link.joint + 1) % 4);  // ground is the link after the first turn
+    x[link.first_coordinate] = now[k] - in_scene[k];
+  }
+  return x;
+}
+
 Eigen::VectorXd admissible_rates(const model::Model& model, int body, double rate) {
+  return admissible_rates(model, model.manifold->reference(), body, rate);
+}
+
+Eigen::VectorXd admissible_rates(const model::Model& model, const Eigen::VectorXd& x, int body, double rate) {
   const multibody::TreeManifold& manifold = manifold_of(model);
   const auto frame = manifold.make_frame();
-  manifold.update(manifold.reference(), configuration_at(manifold, manifold.reference()), *frame);
+  manifold.update(x, configuration_at(manifold, x), *frame);
+  manifold.choose_loop_rows(*frame);
   Eigen::MatrixXd B(manifold.n_c(), manifold.n_v());
-  manifold.project_constraints(*frame, B);
+  manifold.project_constraints(*frame, manifold.loop_basis(*frame), B);
   const Eigen::VectorXd w = B.fullPivLu().kernel().col(0);
   return rate / w[manifold.tree().link_of(body).first_rate] * w;
 }

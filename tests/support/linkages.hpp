@@ -21,8 +21,12 @@ RigidSystem slider_crank(double gravity);
 
 /// Bennett's over-constrained spatial linkage: four revolutes, opposite links equal, sin(twist)/length equal for all.
 RigidSystem bennett(double first_angle);
+/// Coordinates (n_x) of the linkage bennett(scene_angle) where its first angle is another one.
+Eigen::VectorXd bennett_coordinates(const multibody::TreeManifold& manifold, double scene_angle, double first_angle);
 
-/// Minimal velocities of a system of one freedom in its scene pose, with `rate` for the joint that carries `body`.
+/// Minimal velocities of a system of one freedom at x, with `rate` for the joint that carries `body`.
+Eigen::VectorXd admissible_rates(const model::Model& model, const Eigen::VectorXd& x, int body, double rate);
+/// The same in the scene pose.
 Eigen::VectorXd admissible_rates(const model::Model& model, int body, double rate);
 
 }  // namespace muldi::test

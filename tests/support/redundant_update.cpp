@@ -7,6 +7,16 @@ namespace muldi::test {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+namespace {
+
+VectorXd values(const std::vector<model::Bilinear>& rows, const VectorXd& q) {
+  VectorXd g(static_cast<Eigen::Index>(rows.size()));
+  for (Eigen::Index i = 0; i < g.size(); ++i) g[i] = rows[static_cast<std::size_t>(i)].value(q);
+  return g;
+}
+
+}  // namespace
+
 RedundantUpdate::RedundantUpdate(const model::Model& model, double dt)
     : model_(model), manifold_(manifold_of(model)), dt_(dt) {}
 
@@ -24,10 +34,11 @@ int RedundantUpdate::advance(VectorXd& q, VectorXd& p, std::span<const double> u
     manifold_.lift(*frame, VectorXd::Unit(n_v, k), dq);
     T.col(k) = dq;
   }
-  const MatrixXd G_c = dense_jacobian(manifold_.loop_rows(), q0);
-  std::vector<model::Bilinear> rows = manifold_.tree_rows();
-  rows.insert(rows.end(), manifold_.loop_rows().begin(), manifold_.loop_rows().end());
-  const auto n_g = static_cast<Eigen::Index>(rows.size());
+  manifold_.choose_loop_rows(*frame);
+  const MatrixXd Z = manifold_.loop_basis(*frame);
+  const MatrixXd G_c = Z.transpose() * dense_jacobian(manifold_.loop_rows(), q0);
+  const auto n_tree = static_cast<Eigen::Index>(manifold_.tree_rows().size());
+  const Eigen::Index n_g = n_tree + n_c;
   math::BlockMatrix K(*model_.pattern);
   model::IntervalForces forces{VectorXd::Zero(n_q), VectorXd::Zero(n_q)};
   VectorXd mu = VectorXd::Zero(n_c);
@@ -40,11 +51,13 @@ int RedundantUpdate::advance(VectorXd& q, VectorXd& p, std::span<const double> u
     model_.tangent(at, model::TangentWeights::step(dt_), K);
     VectorXd residual(n_v + n_g);
     residual.head(n_v) = T.transpose() * (p + 0.5 * dt_ * forces.force - forces.momentum - G_c.transpose() * mu);
-    for (Eigen::Index i = 0; i < n_g; ++i) residual[n_v + i] = -rows[static_cast<std::size_t>(i)].value(q);
+    residual.segment(n_v, n_tree) = -values(manifold_.tree_rows(), q);
+    residual.tail(n_c) = -Z.transpose() * values(manifold_.loop_rows(), q);
     MatrixXd matrix = MatrixXd::Zero(n_q + n_c, n_q + n_c);
     matrix.topLeftCorner(n_v, n_q) = T.transpose() * K.dense();
     matrix.topRightCorner(n_v, n_c) = (G_c * T).transpose();
-    matrix.bottomLeftCorner(n_g, n_q) = dense_jacobian(rows, q);
+    matrix.block(n_v, 0, n_tree, n_q) = dense_jacobian(manifold_.tree_rows(), q);
+    matrix.bottomLeftCorner(n_c, n_q) = Z.transpose() * dense_jacobian(manifold_.loop_rows(), q);
     const VectorXd increment = matrix.fullPivLu().solve(residual);
     q += increment.head(n_q);
     mu += increment.tail(n_c);

@@ -6,9 +6,9 @@
 
 namespace muldi::test {
 
-/// Unknown q_{n+1} (12 a body) and mu = dt lambda (loop rows), rows
-///     T(q_n)^T [ p_n + dt/2 F - pi - G_c(q_n)^T mu ] = 0,  g(q_{n+1}) = 0
-/// with all g: directors, tree joints, independent loop rows. One dense matrix, plain Newton.
+/// Unknown q_{n+1} (12 a body) and mu, Z mu = dt lambda (loop rows), rows
+///     T(q_n)^T [ p_n + dt/2 F - pi - G_c(q_n)^T Z mu ] = 0,  g(q_{n+1}) = 0
+/// with all g: directors, tree joints, Z^T g_c of the loop rows. One dense matrix, plain Newton.
 class RedundantUpdate {
  public:
   RedundantUpdate(const model::Model& model, double dt);

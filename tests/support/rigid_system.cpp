@@ -157,7 +157,7 @@ variational::State state_at(const model::Model& model, const VectorXd& x, const 
   state.p = v;
   variational::NodeEvaluator(model, "auto").momentum_of(state.q, v, u, state.p);
   state.increment = VectorXd::Zero(manifold.n_v());
-  state.multipliers = VectorXd::Zero(manifold.n_c());
+  state.multipliers = VectorXd::Zero(manifold.n_loop_rows());
   return state;
 }
 

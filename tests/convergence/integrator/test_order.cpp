@@ -56,6 +56,13 @@ TEST(Order, IsTwoForTheSliderCrank) {
   expect_order_two(test::slider_crank(test::earth_gravity), {.dt = 1.0, .steps = 100});
 }
 
+TEST(Order, IsTwoForTheBennettLinkage) {
+  // More than a turn: no two of its five loop rows are independent all the way.
+  const auto model = test::make_model(test::bennett(1.0));
+  const State start = test::state_at(*model, model->manifold->reference(), test::admissible_rates(*model, 0, 0.01));
+  expect_order_two(*model, start, {.dt = 4.0, .steps = 175});
+}
+
 TEST(Order, StaysTwoUnderSmoothControls) {
   // The control of a step is the one at its middle (numerics 1.10).
   test::RigidSystem joint = test::muscle_joint(0.0);

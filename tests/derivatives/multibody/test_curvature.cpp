@@ -32,7 +32,7 @@ void expect_curvature(std::mt19937& random, const test::RigidSystem& system, dou
   const TreeManifold& manifold = test::manifold_of(*model);
   const VectorXd x = test::random_coordinates(random, manifold);
   const VectorXd f = test::random_entries(random, manifold.n_q(), 1.0);
-  const VectorXd lambda = test::random_entries(random, manifold.n_c(), 30.0);
+  const VectorXd lambda = test::random_entries(random, manifold.n_loop_rows(), 30.0);
   const VectorXd q = test::configuration_at(manifold, x);
   const auto frame = manifold.make_frame();
   manifold.update(x, q, *frame);

@@ -18,12 +18,15 @@ void expect_tangent(const model::Model& model, const StaticState& state, const s
   solver.linearise(state, u);
   const MatrixXd A = solver.tangent();
   const MatrixXd B = solver.loop_rows();
+  const MatrixXd Z = solver.loop_basis();
   const auto residual = [&](const VectorXd& w) -> VectorXd {
     StaticState at = state;
     model.manifold->retract(state.x, w, at.x);
     solver.linearise(at, u);
-    VectorXd both(solver.residual().size() + solver.gaps().size());
-    both << -solver.residual(), solver.gaps();
+    VectorXd gaps(Z.rows());
+    model.manifold->constraints(solver.configuration(), gaps);
+    VectorXd both(solver.residual().size() + Z.cols());
+    both << -solver.residual(), Z.transpose() * gaps;
     return both;
   };
   const VectorXd zero = VectorXd::Zero(model.manifold->n_v());
@@ -69,7 +72,7 @@ TEST(StaticTangent, OfTreesWithSpringsLoadsAndJointSprings) {
 TEST(StaticTangent, OfALoopWithItsMultipliers) {
   std::mt19937 random(91);
   const auto model = test::make_model(test::four_bar({}, 0.01));
-  expect_tangent(*model, {VectorXd{{0.1, -0.2, 0.3}}, VectorXd{{0.7, -1.1}}}, {});
+  expect_tangent(*model, {VectorXd{{0.1, -0.2, 0.3}}, VectorXd{{0.7, -1.1, 0.4, 0.9, -0.3}}}, {});
 }
 
 TEST(StaticTangent, LoadRateIsTheSlopeByTheControls) {

@@ -31,15 +31,18 @@ TEST(LongLoops, BennettLinkageTurnsThroughWithItsOneFreedom) {
   const variational::State start =
       test::state_at(*model, model->manifold->reference(), test::admissible_rates(*model, 0, 0.01));
   double turned = 0.0;
+  double regularity = 1.0;
   test::EnergyHistory history(*model, 20'000);
   const test::Run done = test::run(*model, start, {.dt = 0.5, .steps = 20'000}, [&](const auto& node) {
     history.add(node);
     turned = std::max(turned, std::abs(node.state.x[0]));
+    regularity = std::min(regularity, node.report.loop_regularity);
   });
   ASSERT_EQ(done.result.status, variational::Status::completed) << done.result.sentence;
   std::cout << "turns " << turned / (2.0 * std::numbers::pi) << ", violation " << history.violation() << ", band "
-            << history.band().all / done.ledger.initial_total << " of the energy\n";
+            << history.band().all / done.ledger.initial_total << " of the energy, regularity " << regularity << '\n';
   EXPECT_GT(turned, 10.0 * 2.0 * std::numbers::pi) << "ten turns";
+  EXPECT_GT(regularity, 0.4) << "any two of the five rows lose rank twice a turn, the linkage never does";
   EXPECT_LT(history.violation(), 1e-10) << "redundant rows included";
   EXPECT_LE(history.band().last_tenth, 1.1 * history.band().first_tenth);
 }

@@ -44,13 +44,15 @@ struct Solution {
   VectorXd lambda;
 };
 
-/// The system written out with dense matrices.
-Solution reference(const TreeManifold& manifold, const std::array<VectorXd, 2>& x, const MatrixXd& K,
+/// The system written out with dense matrices; Z of the first frame.
+Solution reference(const TreeManifold& manifold, const std::array<VectorXd, 2>& x, const MatrixXd& K, const MatrixXd& Z,
                    const Solution& rhs) {
   const MatrixXd T_l = test::dense_null_space(manifold, x[0]);
   const MatrixXd T_r = test::dense_null_space(manifold, x[1]);
-  const MatrixXd G_l = test::dense_jacobian(manifold.loop_rows(), test::configuration_at(manifold, x[0]));
-  const MatrixXd G_r = test::dense_jacobian(manifold.loop_rows(), test::configuration_at(manifold, x[1]));
+  const MatrixXd G_l =
+      Z.transpose() * test::dense_jacobian(manifold.loop_rows(), test::configuration_at(manifold, x[0]));
+  const MatrixXd G_r =
+      Z.transpose() * test::dense_jacobian(manifold.loop_rows(), test::configuration_at(manifold, x[1]));
   const Eigen::Index n_v = T_l.cols();
   const Eigen::Index n_c = G_l.rows();
   MatrixXd matrix = MatrixXd::Zero(n_v + n_c, n_v + n_c);
@@ -82,7 +84,8 @@ void expect_same(std::mt19937& random, const test::RigidSystem& system, const st
   const auto right = manifold.make_frame();
   manifold.update(x[0], test::configuration_at(manifold, x[0]), *left);
   manifold.update(x[1], test::configuration_at(manifold, x[1]), *right);
-  const Solution expected = reference(manifold, x, K.dense(), rhs);
+  manifold.choose_loop_rows(*left);
+  const Solution expected = reference(manifold, x, K.dense(), manifold.loop_basis(*left), rhs);
   for (const std::string& kind : kinds) {
     const auto solver = manifold.make_solver(*model->pattern, kind);
     ASSERT_EQ(solver->name(), kind);

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 StaticState scene_pose(const model::Model& model) {
-  return {model.manifold->reference(), VectorXd::Zero(model.manifold->n_c())};
+  return {model.manifold->reference(), VectorXd::Zero(model.manifold->n_loop_rows())};
 }
 
 /// The equilibrium under the model's controls at t = 0, found from the scene

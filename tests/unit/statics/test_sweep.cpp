@@ -26,7 +26,7 @@ struct Curve {
 
 Curve sweep(const model::Model& model, const SweepOptions& options) {
   Curve curve;
-  StaticState state{model.manifold->reference(), VectorXd::Zero(model.manifold->n_c())};
+  StaticState state{model.manifold->reference(), VectorXd::Zero(model.manifold->n_loop_rows())};
   std::vector<double> fixed(model.controls.size(), 0.0);
   std::vector<double> direction(model.controls.size(), 0.0);
   if (!direction.empty()) direction[0] = 1.0;

@@ -199,6 +199,94 @@ TEST(Stepper, StopsAtAConfigurationWithoutRank) {
   EXPECT_EQ(report.sentence, "the loop constraints lose rank: the mechanism is at a change point");
 }
 
+TEST(Stepper, StopsWhereTheScenePoseIsAChangePoint) {
+  // All bars in line: there the loop has one row, and a step along it opens the loop.
+  const test::FourBar form{.ground = 90.0, .crank = 30.0, .coupler = 90.0, .rocker = 30.0, .crank_angle = 0.0};
+  const auto model = test::make_model(test::four_bar(form, 0.0));
+  const multibody::TreeManifold& manifold = test::manifold_of(*model);
+  VectorXd w(3);
+  for (const auto& link : manifold.tree().links) w[link.first_rate] = link.joint == 1 ? -0.01 : 0.01;
+  State state = test::state_at(*model, manifold.reference(), w);
+  Stepper stepper(*model, 1.0, {});
+  ASSERT_EQ(stepper.advance(state, {}).status, Status::running);
+  const StepReport report = stepper.advance(state, {});
+  EXPECT_EQ(report.status, Status::rank_change);
+  EXPECT_EQ(report.sentence,
+            "the loop constraints have a higher rank than in the scene pose, which is a change point of the mechanism: "
+            "give another scene pose");
+}
+
+/// First angle of the linkage bennett(1), near one, where two of its rows lose rank.
+double rank_lost_at(const multibody::TreeManifold& manifold, std::pair<int, int> rows, double near) {
+  const auto regularity = [&](double angle) {
+    const VectorXd x = test::bennett_coordinates(manifold, 1.0, angle);
+    const Eigen::MatrixXd B = test::dense_jacobian(manifold.loop_rows(), test::configuration_at(manifold, x)) *
+                              test::dense_null_space(manifold, x);
+    const Vector3d a = B.row(rows.first);
+    const Vector3d b = B.row(rows.second);
+    return a.cross(b).norm() / std::max(a.squaredNorm(), b.squaredNorm());
+  };
+  double low = near - 0.1;
+  double high = near + 0.1;
+  for (int i = 0; i < 80; ++i) {
+    const double third = (high - low) / 3.0;
+    if (regularity(low + third) < regularity(high - third)) {
+      high -= third;
+    } else {
+      low += third;
+    }
+  }
+  EXPECT_LT(regularity(0.5 * (low + high)), 1e-7);
+  return 0.5 * (low + high);
+}
+
+TEST(Stepper, PassesWhereTwoRowsOfARegularLoopLoseRank) {
+  // The rows that are best in the scene pose, and others; angles from a scan of the turn.
+  const auto model = test::make_model(test::bennett(1.0));
+  const multibody::TreeManifold& manifold = test::manifold_of(*model);
+  using Place = std::pair<std::pair<int, int>, double>;
+  for (const auto& [rows, near] : {Place({2, 4}, 2.215), Place({0, 1}, 3.145), Place({3, 4}, 3.145)}) {
+    const double angle = rank_lost_at(manifold, rows, near);
+    for (const double side : {-1e-4, 0.0, 1e-4}) {
+      const VectorXd x = test::bennett_coordinates(manifold, 1.0, angle + side);
+      State state = test::state_at(*model, x, test::admissible_rates(*model, x, 0, 0.01));
+      Stepper stepper(*model, 1.0, {});
+      for (int n = 0; n < 20; ++n) {
+        const StepReport report = stepper.advance(state, {});
+        ASSERT_EQ(report.status, Status::running) << report.sentence;
+        ASSERT_GT(report.loop_regularity, 0.4);
+        ASSERT_LE(report.iterations, 5);
+        ASSERT_LT(manifold.violation(state.q), 1e-13);
+      }
+    }
+  }
+}
+
+TEST(Stepper, GoesOnWithTheSameBitsOnALoop) {
+  const auto model = test::make_model(test::bennett(1.0));
+  State state = test::state_at(*model, model->manifold->reference(), test::admissible_rates(*model, 0, 0.05));
+  Stepper stepper(*model, 1.0, {});
+  State kept;
+  for (int n = 0; n < 300; ++n) {  // more than two turns
+    if (n == 117) {
+      // What a checkpoint holds.
+      kept = {.step = state.step,
+              .x = state.x,
+              .q = test::configuration_at(*model->manifold, state.x),
+              .p = state.p,
+              .increment = state.increment,
+              .multipliers = state.multipliers};
+    }
+    ASSERT_EQ(stepper.advance(state, {}).status, Status::running);
+  }
+  Stepper again(*model, 1.0, {});
+  while (kept.step < state.step) ASSERT_EQ(again.advance(kept, {}).status, Status::running);
+  EXPECT_EQ(kept.x, state.x);
+  EXPECT_EQ(kept.p, state.p);
+  EXPECT_EQ(kept.multipliers, state.multipliers);
+  EXPECT_EQ(stepper.constraint_force(), again.constraint_force());
+}
+
 TEST(Stepper, ReportsACollapsedMuscle) {
   // Far above the dynamic pull-in of 54.6 kV/mm (numerics 3.1) the membrane runs away.
   const auto model = test::make_model(test::membrane(9e4, 0.0));
