@@ -19,6 +19,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 
 namespace muldi::base {
@@ -100,10 +101,12 @@ struct Field {
   Need need = Need::required;
 };
 
-/// What is known of a choice between components: `key` takes the name of one, whose fields stand beside it.
+/// What is known of a choice between components: `key` takes the name of one, whose fields stand beside it. Where the
+/// choice is optional, the first component of the family is meant without the key.
 struct Choice {
   std::string_view key;
   std::string_view doc;
+  Need need = Need::required;
 };
 
 /// A key that the format knows but this version of the program does not read yet.
@@ -132,5 +135,20 @@ struct TypeList {
 /// A value of one component of the family.
 template <class List>
 using VariantOf = typename List::Variant;
+
+/// Calls visit(std::type_identity<Component>{}) for each component of the family in its order.
+template <class... Components, class Visit>
+constexpr void for_each_type(TypeList<Components...>, Visit visit) {
+  (visit(std::type_identity<Components>{}), ...);
+}
+
+/// Position of a component in its family; the size of the family if it is none of it.
+template <class Component, class... Components>
+constexpr std::size_t index_in(TypeList<Components...>) {
+  std::size_t index = 0;
+  bool found = false;
+  ((found = found || std::is_same_v<Component, Components>, index += found ? 0 : 1), ...);
+  return index;
+}
 
 }  // namespace muldi::base

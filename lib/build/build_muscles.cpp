@@ -1,12 +1,18 @@
-#include <cmath>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <tuple>
 
 #include "base/error.hpp"
 #include "build/build_terms.hpp"
 #include "build/place_bodies.hpp"
-#include "muscles/muscle_observables.hpp"
+#include "muscles/element_observables.hpp"
 
 namespace muldi::build {
 namespace {
+
+bool is_free(const scene::Muscle& muscle) { return muscle.ends == scene::MuscleEnds::free; }
 
 double distance(const TermContext& context, const scene::Attachment& from, const scene::Attachment& to) {
   const auto at = [&](const scene::Attachment& end) {
@@ -20,48 +26,128 @@ double distance(const TermContext& context, const scene::Attachment& from, const
 
 muscles::ElectricLaw electric_law(const scene::Material& material, double eps0) {
   if (!material.electric) return {};
-  if (const auto* ideal = std::get_if<scene::IdealDielectric>(&material.electric->law)) {
-    return muscles::ElectricLaw::ideal(ideal->relative_permittivity, eps0);
-  }
-  const auto& law = std::get<scene::Invariants>(material.electric->law);
-  return muscles::ElectricLaw::invariants(law.c1, law.c2, law.c3, eps0);
+  return std::visit(
+      [eps0](const auto& law) {
+        if constexpr (requires { law.relative_permittivity; }) {
+          return muscles::ElectricLaw::ideal(law.relative_permittivity, eps0);
+        } else if constexpr (requires { law.c3; }) {
+          return muscles::ElectricLaw::invariants(law.c1, law.c2, law.c3, eps0);
+        } else {
+          return muscles::ElectricLaw::vu(law.c1, law.c2, eps0);
+        }
+      },
+      material.electric->law);
 }
 
-muscles::LumpedDea element_of(const scene::Scene& scene, const scene::Muscle& muscle, double length) {
-  const scene::Material material = scene::lumped_material(muscle, scene.materials.find(muscle.material.name)->value);
-  const auto& section = scene::lumped_section(muscle);
-  muscles::LumpedDea element;
-  element.shear_modulus = std::get<scene::NeoHookean>(material.elastic.law).shear_modulus();
-  element.viscosity = material.viscous ? std::get<scene::KelvinVoigt>(material.viscous->law).viscosity : 0.0;
-  element.density = material.density;
-  element.length = length;
-  element.area = section.area();
-  element.shape_factor = section.shape_factor();
-  element.electric_law = electric_law(material, scene.units.eps0());
-  element.inertia = muscle.lumped.inertia;
-  return element;
+double rest_length(const TermContext& context, const scene::Muscle& muscle) {
+  if (muscle.rest_length) return *muscle.rest_length;
+  return is_free(muscle) ? *muscle.length : distance(context, *muscle.from, *muscle.to);
 }
 
-/// From the control's quantity to the nominal field.
-muscles::ControlInput field_input(const TermContext& context, const scene::Muscle& muscle, double length) {
-  muscles::ControlInput input;
-  if (!muscle.control) return input;
-  input.control = context.controls.index(muscle.control->name);
-  switch (context.scene.controls.find(muscle.control->name)->value.quantity) {
-    case scene::ControlQuantity::layer_voltage:
-      input.factor = muscles::field_per_layer_voltage(*muscle.layer_thickness);
-      break;
-    case scene::ControlQuantity::total_voltage:
-      input.factor = muscles::field_per_total_voltage(length);
-      break;
-    default:
-      break;
+muscles::MuscleGiven given_of(const scene::Scene& scene, const scene::Muscle& muscle, double length) {
+  const scene::Material& material = scene.materials.find(muscle.material.name)->value;
+  const auto& elastic = std::get<scene::NeoHookean>(material.elastic.law);
+  return {.section = muscle.section,
+          .length = length,
+          .layer_thickness = muscle.layer_thickness,
+          .density = material.density,
+          .shear_modulus = elastic.shear_modulus(),
+          .poisson_ratio = elastic.poisson_ratio(),
+          .viscosity = material.viscous ? std::get<scene::KelvinVoigt>(material.viscous->law).viscosity : 0.0,
+          .electric_law = electric_law(material, scene.units.eps0()),
+          .eps0 = scene.units.eps0(),
+          .isolated = is_free(muscle)};
+}
+
+std::string_view word_of(scene::ControlQuantity quantity) {
+  for (const auto& word : scene::words(quantity)) {
+    if (word.value == quantity) return word.word;
   }
-  return input;
+  return {};
+}
+
+/// Where the element of a model takes its control from.
+template <class Model>
+auto inputs_of(const TermContext& context, const scene::Muscle& muscle, const muscles::MuscleGiven& given) {
+  constexpr int n_controls = muscles::MuscleElement<Model>::n_controls;
+  static_assert(n_controls <= 1, "a scene names one control a muscle");
+  std::array<muscles::ControlInput, static_cast<std::size_t>(n_controls)> inputs;
+  for (muscles::ControlInput& input : inputs) {
+    if (!muscle.control) break;
+    const scene::ControlQuantity quantity = context.scene.controls.find(muscle.control->name)->value.quantity;
+    input.control = context.controls.index(muscle.control->name);
+    input.factor = Model::control_factor(word_of(quantity), given);
+  }
+  return inputs;
 }
 
 void add_observables(TermContext& context, std::vector<model::Observable> observables) {
   for (model::Observable& observable : observables) context.built.model->observables.push_back(std::move(observable));
+}
+
+/// The term of these elements, if there are any.
+template <class Term, class Components, class... Arguments>
+void add_term(TermContext& context, Components components, const Arguments&... arguments) {
+  if (components.empty()) return;
+  context.built.model->terms.push_back(std::make_unique<Term>(std::move(components), arguments...));
+}
+
+/// The terms of all muscles of one model.
+template <class Model>
+void add_muscles_of(TermContext& context, std::vector<base::Diagnostic>& errors) {
+  using Element = muscles::MuscleElement<Model>;
+  std::vector<muscles::TwoPointComponent<Element>> attached;
+  std::vector<muscles::FreeActuator<Element>> free;
+  const int n_bodies = static_cast<int>(context.scene.bodies.size());
+  int n_free = 0;  // of all models: each has an entry of q
+  for (const auto& entry : context.scene.muscles) {
+    const scene::Muscle& muscle = entry.value;
+    const int free_index = is_free(muscle) ? n_free++ : -1;
+    if (muscle.model != scene::muscle_model<Model>) continue;
+    const double length = rest_length(context, muscle);
+    if (length <= 0.0) {
+      errors.push_back(scene::error_at(entry.origin, "its ends coincide in the scene pose; give its rest_length"));
+      continue;
+    }
+    const muscles::MuscleGiven given = given_of(context.scene, muscle, length);
+    const Element element = std::get<std::optional<Model>>(muscle.options).value_or(Model{}).element(given);
+    const auto inputs = inputs_of<Model>(context, muscle, given);
+    if (is_free(muscle)) {
+      free.push_back({entry.name, element, n_bodies + free_index, 12 * n_bodies + free_index, inputs});
+      add_observables(context, muscles::observables_of(free.back()));
+    } else {
+      attached.push_back(
+          {entry.name, element, point_of(context.scene, *muscle.from), point_of(context.scene, *muscle.to), inputs});
+      add_observables(context, muscles::observables_of(attached.back()));
+    }
+    context.built.assembled.damping |= element.dissipates();
+    context.built.assembled.electric |= muscle.control.has_value();
+  }
+  context.built.assembled.muscles += attached.size();
+  context.built.assembled.free_actuators += free.size();
+  add_term<muscles::TwoPointTerm<Element>>(context, std::move(attached), to_eigen(context.scene.gravity));
+  add_term<muscles::FreeActuatorTerm<Element>>(context, std::move(free));
+}
+
+/// The term of all springs of one type.
+template <class Type>
+void add_springs_of(TermContext& context) {
+  using Element = muscles::SpringElement<Type>;
+  static_assert(Element::n_controls == 0, "springs have no controls");
+  std::vector<muscles::TwoPointComponent<Element>> springs;
+  for (const auto& entry : context.scene.springs) {
+    const scene::Spring& spring = entry.value;
+    const Type* said = std::get_if<Type>(&spring.type);
+    if (said == nullptr) continue;
+    springs.push_back({entry.name,
+                       said->element(distance(context, spring.from, spring.to)),
+                       point_of(context.scene, spring.from),
+                       point_of(context.scene, spring.to),
+                       {}});
+    add_observables(context, muscles::observables_of(springs.back()));
+    context.built.assembled.damping |= springs.back().element.dissipates();
+  }
+  add_term<muscles::TwoPointTerm<Element>>(context, std::move(springs), to_eigen(context.scene.gravity));
 }
 
 }  // namespace
@@ -79,65 +165,16 @@ model::LinearPoint point_of(const scene::Scene& scene, const scene::Attachment& 
 }
 
 void add_muscles(TermContext& context) {
-  std::vector<muscles::TwoPointComponent<muscles::LumpedDea>> attached;
-  std::vector<muscles::FreeActuator> free;
   std::vector<base::Diagnostic> errors;
-  const int n_bodies = static_cast<int>(context.scene.bodies.size());
-  for (const auto& entry : context.scene.muscles) {
-    const scene::Muscle& muscle = entry.value;
-    if (muscle.ends == scene::MuscleEnds::free) {
-      const double length = muscle.rest_length.value_or(*muscle.length);
-      const int index = static_cast<int>(free.size());
-      free.push_back({entry.name, element_of(context.scene, muscle, length), n_bodies + index, 12 * n_bodies + index,
-                      field_input(context, muscle, length)});
-      free.back().element.inertia = muscles::Inertia::thesis;
-      add_observables(context, muscles::muscle_observables(free.back(), muscle.layer_thickness));
-    } else {
-      const double length = muscle.rest_length.value_or(distance(context, *muscle.from, *muscle.to));
-      if (length <= 0.0) {
-        errors.push_back(scene::error_at(entry.origin, "its ends coincide in the scene pose; give its rest_length"));
-        continue;
-      }
-      attached.push_back({entry.name,
-                          element_of(context.scene, muscle, length),
-                          point_of(context.scene, *muscle.from),
-                          point_of(context.scene, *muscle.to),
-                          {field_input(context, muscle, length)}});
-      add_observables(context, muscles::muscle_observables(attached.back(), muscle.layer_thickness));
-    }
-    const muscles::LumpedDea& element =
-        muscle.ends == scene::MuscleEnds::free ? free.back().element : attached.back().element;
-    context.built.assembled.damping |= element.viscosity > 0.0;
-    context.built.assembled.electric |= muscle.control.has_value();
-  }
+  base::for_each_type(muscles::MuscleModels{},
+                      [&]<class Model>(std::type_identity<Model>) { add_muscles_of<Model>(context, errors); });
   if (!errors.empty()) throw base::InputError(std::move(errors));
-  context.built.assembled.muscles = attached.size();
-  context.built.assembled.free_actuators = free.size();
-  auto& terms = context.built.model->terms;
-  if (!attached.empty()) {
-    terms.push_back(std::make_unique<muscles::TwoPointTerm<muscles::LumpedDea>>(std::move(attached),
-                                                                                to_eigen(context.scene.gravity)));
-  }
-  if (!free.empty()) terms.push_back(std::make_unique<muscles::FreeActuatorTerm>(std::move(free)));
 }
 
 void add_springs(TermContext& context) {
-  std::vector<muscles::TwoPointComponent<muscles::Spring>> springs;
-  for (const auto& entry : context.scene.springs) {
-    const scene::Spring& spring = entry.value;
-    muscles::Spring element;
-    element.stiffness = spring.element.stiffness;
-    element.rest_length = spring.element.rest_length.value_or(distance(context, spring.from, spring.to));
-    element.damping = spring.element.damping;
-    springs.push_back(
-        {entry.name, element, point_of(context.scene, spring.from), point_of(context.scene, spring.to), {}});
-    add_observables(context, muscles::spring_observables(springs.back()));
-    context.built.assembled.damping |= spring.element.damping > 0.0;
-  }
-  context.built.assembled.springs = springs.size();
-  if (springs.empty()) return;
-  context.built.model->terms.push_back(
-      std::make_unique<muscles::TwoPointTerm<muscles::Spring>>(std::move(springs), to_eigen(context.scene.gravity)));
+  base::for_each_type(muscles::SpringTypes{},
+                      [&]<class Type>(std::type_identity<Type>) { add_springs_of<Type>(context); });
+  context.built.assembled.springs = context.scene.springs.size();
 }
 
 }  // namespace muldi::build

@@ -5,6 +5,7 @@
 /// along one direction. The functions live in math/jet_functions.hpp, which this header includes.
 #include <array>
 #include <compare>
+#include <complex>
 #include <concepts>
 #include <cstddef>
 #include <type_traits>
@@ -147,8 +148,9 @@ inline constexpr bool is_jet<Jet2<N, S>> = true;
 template <class T>
 concept Jet = is_jet<T>;
 
-/// The number at the bottom of a scalar.
+/// The number at the bottom of a scalar; branches ask it. That of a complex step is the real part.
 constexpr double number(double x) { return x; }
+inline double number(const std::complex<double>& x) { return x.real(); }
 template <Jet J>
 double number(const J& x) {
   return number(x.value);

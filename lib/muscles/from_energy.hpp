@@ -73,4 +73,17 @@ Vector6 point_control_force(const Element& element, const TwoPoint<double, Eleme
   return out;
 }
 
+/// Force with which the first end is pulled to the second, inertia apart; > 0 in tension.
+template <EnergyElement Element>
+double pull(const Element& element, const TwoPoint<double, Element::n_controls>& x) {
+  auto rest = x;
+  rest.v1.setZero();
+  rest.v2.setZero();
+  const EnergyJets jets(element, rest);
+  const Line line(x);
+  double along = 0.0;
+  for (int r = 0; r < 3; ++r) along += jets.lagrangian.d(r) * line.n(r);
+  return 0.0 - along - element.force(x);
+}
+
 }  // namespace muldi::muscles

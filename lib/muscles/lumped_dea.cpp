@@ -10,9 +10,9 @@ std::string LumpedDea::inadmissible(double z) const {
   return base::format("stretch {} below {}", base::number_text(stretch, 8), base::number_text(least_stretch));
 }
 
-std::string LumpedDea::advice(double z, double zd, double field) const {
-  const double push = -pull(z, zd, field);
-  const double limit = buckling_load(z, field);
+std::string LumpedDea::advice(double z, double zd, const Controls<double, 1>& field) const {
+  const double push = -pull(z, zd, field[0]);
+  const double limit = buckling_load(z, field[0]);
   if (push <= limit) return {};
   return base::format(
       "compressed with {} beyond its buckling load {} as a slender pinned rod; a lumped muscle stays straight",

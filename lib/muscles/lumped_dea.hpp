@@ -17,7 +17,7 @@
 #include "base/describe.hpp"
 #include "muscles/axial.hpp"
 #include "muscles/electric_law.hpp"
-#include "muscles/section.hpp"
+#include "muscles/muscle_model.hpp"
 
 namespace muldi::muscles {
 
@@ -30,59 +30,6 @@ inline constexpr std::array<base::Word<Inertia>, 2> inertia_words{
       .value = Inertia::thesis,
       .doc = "a point mass at the centre and the axial rate (thesis 7.2.5)"}}};
 constexpr std::span<const base::Word<Inertia>> words(Inertia) { return inertia_words; }
-
-/// What a scene says under `lumped:` of a muscle; the optional fields replace the muscle's own for this model.
-struct LumpedModel {
-  static constexpr std::string_view name = "lumped";
-  static constexpr std::string_view doc = "one uniform axial stretch between two points";
-
-  Inertia inertia = Inertia::consistent;
-  std::optional<Section> section;
-  std::optional<double> young;
-  std::optional<double> shear_modulus;
-  std::optional<double> viscosity;
-  std::optional<double> density;
-  std::optional<double> relative_permittivity;
-
-  template <class Self, class Visit>
-  static void describe(Self& self, Visit& visit) {
-    using base::Field;
-    using base::Need;
-    visit(Field{.key = "inertia", .doc = "inertia of the muscle", .need = Need::optional}, self.inertia);
-    visit(Field{.key = "section", .doc = "replaces the muscle's section", .need = Need::optional}, self.section);
-    visit(Field{.key = "young",
-                .doc = "replaces Young's modulus of the material, with its Poisson's ratio",
-                .unit = base::dimension::stress,
-                .range = base::positive,
-                .need = Need::optional},
-          self.young);
-    visit(Field{.key = "mu",
-                .doc = "replaces the shear modulus of the material",
-                .unit = base::dimension::stress,
-                .range = base::positive,
-                .need = Need::optional},
-          self.shear_modulus);
-    visit(Field{.key = "viscosity",
-                .doc = "replaces the viscosity of the material",
-                .unit = base::dimension::viscosity,
-                .range = base::non_negative,
-                .need = Need::optional},
-          self.viscosity);
-    visit(Field{.key = "density",
-                .doc = "replaces the density of the material",
-                .unit = base::dimension::density,
-                .range = base::positive,
-                .need = Need::optional},
-          self.density);
-    visit(Field{.key = "relative_permittivity",
-                .doc = "replaces the electric law of the material by an ideal dielectric",
-                .range = {.min = 1.0},
-                .need = Need::optional},
-          self.relative_permittivity);
-  }
-
-  friend bool operator==(const LumpedModel&, const LumpedModel&) = default;
-};
 
 /// The muscle as a two-point element. The control is the nominal field E (voltage over reference length).
 struct LumpedDea {
@@ -99,6 +46,7 @@ struct LumpedDea {
   double shape_factor = 1.0;   ///< k of the section
   ElectricLaw electric_law{};
   Inertia inertia = Inertia::consistent;
+  std::optional<double> layer_thickness = {};  ///< of the reference shape, if known
 
   double volume() const { return area * length; }
   double mass() const { return density * volume(); }
@@ -150,7 +98,25 @@ struct LumpedDea {
 
   std::string inadmissible(double z) const;
   /// Says so where the muscle is compressed beyond its buckling load: the lumped model stays straight (numerics 1.10).
-  std::string advice(double z, double zd, double field) const;
+  std::string advice(double z, double zd, const Controls<double, 1>& field) const;
+  bool dissipates() const { return viscosity > 0.0; }
+
+  /// Stretch and fields; voltage and charge of one layer where its thickness is known.
+  template <class Add>
+  void observe(Add add) const {
+    namespace dimension = base::dimension;
+    using State = AxialState<1>;
+    add("stretch", dimension::none, "length over reference length", [*this](const State& at) { return at.z / length; });
+    add("field", dimension::field, "nominal field: voltage over reference length",
+        [](const State& at) { return at.e[0]; });
+    add("true_field", dimension::field, "field in the deformed muscle",
+        [*this](const State& at) { return true_field(at.z, at.e[0]); });
+    if (!layer_thickness) return;
+    add("layer_voltage", dimension::voltage, "voltage of one layer",
+        [*this](const State& at) { return at.e[0] * *layer_thickness; });
+    add("charge", dimension::charge, "charge on one layer",
+        [*this](const State& at) { return layer_charge(at.z, at.e[0]); });
+  }
 
   /// dPi/dz at stretch L and nominal field E: the force with which the charged muscle pulls at rest.
   template <class S>
@@ -187,8 +153,43 @@ struct LumpedDea {
   double axial_inertia() const { return inertia == Inertia::thesis ? mass() / 24.0 : 0.0; }
 };
 
-/// Nominal field a volt of layer voltage: 1/t; of total voltage over the whole length: 1/Z (numerics 1.10).
-constexpr double field_per_layer_voltage(double layer_thickness) { return 1.0 / layer_thickness; }
-constexpr double field_per_total_voltage(double length) { return 1.0 / length; }
+/// What a scene says under `lumped:` of a muscle.
+struct LumpedModel {
+  static constexpr std::string_view name = "lumped";
+  static constexpr std::string_view doc = "one uniform axial stretch between two points";
+  static constexpr std::span<const std::string_view> quantities = field_quantities;
+
+  Inertia inertia = Inertia::consistent;
+  Replacements replacements = {};
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit& visit) {
+    visit(base::Field{.key = "inertia", .doc = "inertia of the muscle", .need = base::Need::optional}, self.inertia);
+    Replacements::describe(self.replacements, visit);
+  }
+
+  friend bool operator==(const LumpedModel&, const LumpedModel&) = default;
+
+  std::optional<Fault> fault() const { return replacements.fault(); }
+  bool is_driven(bool dielectric) const { return replacements.is_dielectric(dielectric); }
+
+  LumpedDea element(MuscleGiven given) const {
+    replacements.apply(given);
+    return {.shear_modulus = given.shear_modulus,
+            .viscosity = given.viscosity,
+            .density = given.density,
+            .length = given.length,
+            .area = given.section.area(),
+            .shape_factor = given.section.shape_factor(),
+            .electric_law = given.electric_law,
+            // With the centre at rest both inertias are the same, and this one is a function of the length alone.
+            .inertia = given.isolated ? Inertia::thesis : inertia,
+            .layer_thickness = given.layer_thickness};
+  }
+  /// The control is the nominal field.
+  static double control_factor(std::string_view quantity, const MuscleGiven& given) {
+    return field_factor(quantity, given);
+  }
+};
 
 }  // namespace muldi::muscles

@@ -8,13 +8,15 @@
 ///     struct Research {
 ///       static constexpr int n_controls = 1;
 ///       static constexpr std::string_view folder = "muscles", noun = "muscle";
-///       double mass() const;                                          // weight, half at each end
+///       double mass() const;                                          // weight, half at each end; 0 without
 ///       template <class S> S kinetic(const TwoPoint<S, 1>& x) const;
 ///       template <class S> S elastic(const TwoPoint<S, 1>& x) const;
 ///       template <class S> S electric(const TwoPoint<S, 1>& x) const;
 ///       template <class S> S force(const TwoPoint<S, 1>& x) const;    // on the length: virtual work f dz
-///       std::string inadmissible(double z) const;
+///       bool dissipates() const;                                      // whether the force depends on velocities
 ///     };
+///
+/// and, if it has them, inadmissible, advice and observe as an AxialElement.
 ///
 /// Kinetic energies do not depend on controls.
 #include <Eigen/Core>
@@ -22,7 +24,6 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
-#include <string>
 #include <string_view>
 
 #include "math/jet.hpp"
@@ -67,6 +68,7 @@ concept EnergyElement = requires(const E& element, const TwoPoint<double, E::n_c
   { element.elastic(x) } -> std::convertible_to<double>;
   { element.electric(x) } -> std::convertible_to<double>;
   { element.force(x) } -> std::convertible_to<double>;
+  { element.dissipates() } -> std::convertible_to<bool>;
 };
 
 template <class E>
@@ -112,7 +114,7 @@ void point_forces(const Element& element, const TwoPoint<double, Element::n_cont
   const auto d = axial_derivatives(element, line.z, line.zd, x.e);
   const Eigen::Vector3d force = (d.l_z + d.f) * line.n + d.l_d * line.t;
   const Eigen::Vector3d momentum = d.l_d * line.n;
-  const EndMass m = element.end_mass();
+  const EndMass m = end_mass_of(element);
   out.force << force, -force;
   out.momentum << momentum + m.m11 * x.v1 + m.m12 * x.v2, -momentum + m.m12 * x.v1 + m.m22 * x.v2;
 }
@@ -139,7 +141,7 @@ void point_tangent(const Element& element, const TwoPoint<double, Element::n_con
   const Eigen::Vector3d across = tn * line.n + tt * line.t;
   Eigen::Matrix3d axial = line.n * along.transpose() + line.t * across.transpose();
   axial.diagonal().array() += p;
-  const EndMass m = element.end_mass();
+  const EndMass m = end_mass_of(element);
   out.topLeftCorner<3, 3>() = axial;
   out.topRightCorner<3, 3>() = -axial;
   out.bottomLeftCorner<3, 3>() = -axial;
@@ -163,6 +165,13 @@ Vector6 point_control_force(const Element& element, const TwoPoint<double, Eleme
   return out;
 }
 
+/// Force with which the element pulls its ends together, inertia apart; > 0 in tension.
+template <AxialElement Element>
+double pull(const Element& element, const TwoPoint<double, Element::n_controls>& x) {
+  const Line line(x);
+  return pull(element, AxialState<Element::n_controls>{line.z, line.zd, x.e});
+}
+
 /// An element of the fast path as an EnergyElement: the readable formula, and the referee of the fast path.
 template <AxialElement Element>
 struct FromAxial {
@@ -172,12 +181,12 @@ struct FromAxial {
 
   Element element;
 
-  double mass() const { return element.mass(); }
+  double mass() const { return mass_of(element); }
   template <class S>
   S kinetic(const TwoPoint<S, n_controls>& x) const {
-    const EndMass m = element.end_mass();
+    const EndMass m = end_mass_of(element);
     return 0.5 * (m.m11 * S(x.v1.dot(x.v1)) + m.m22 * S(x.v2.dot(x.v2))) + m.m12 * S(x.v1.dot(x.v2)) +
-           element.kinetic(x.length(), x.rate());
+           kinetic_energy(element, x.length(), x.rate());
   }
   template <class S>
   S elastic(const TwoPoint<S, n_controls>& x) const {
@@ -185,13 +194,13 @@ struct FromAxial {
   }
   template <class S>
   S electric(const TwoPoint<S, n_controls>& x) const {
-    return element.electric(x.length(), x.e);
+    return electric_energy(element, x.length(), x.e);
   }
   template <class S>
   S force(const TwoPoint<S, n_controls>& x) const {
     return element.force(x.length(), x.rate(), x.e);
   }
-  std::string inadmissible(double z) const { return element.inadmissible(z); }
+  bool dissipates() const { return element.dissipates(); }
 };
 
 /// Either kind of element as an EnergyElement.

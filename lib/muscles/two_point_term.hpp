@@ -69,7 +69,7 @@ class TwoPointTerm final : public model::IntervalTerm {
     PointForces forces;
     for (const Component& component : components_) {
       point_forces(component.element, component.state(at.q, at.v, at.u), forces);
-      const Eigen::Vector3d weight = 0.5 * component.element.mass() * gravity_;
+      const Eigen::Vector3d weight = 0.5 * mass_of(component.element) * gravity_;
       component.a1.add_transposed(forces.force.template head<3>() + weight, out.force);
       component.a2.add_transposed(forces.force.template tail<3>() + weight, out.force);
       component.a1.add_transposed(forces.momentum.template head<3>(), out.momentum);
@@ -128,15 +128,15 @@ class TwoPointTerm final : public model::IntervalTerm {
       out[k] += {.kinetic = energy.kinetic(x),
                  .elastic = energy.elastic(x),
                  .electric = energy.electric(x),
-                 .gravity = -components_[k].element.mass() * gravity_.dot(x.midpoint())};
+                 .gravity = -mass_of(components_[k].element) * gravity_.dot(x.midpoint())};
     }
   }
 
   std::string advice(const model::NodePoint& at) const override {
-    if constexpr (requires(const Element& element) { element.advice(1.0, 0.0, 0.0); }) {
+    if constexpr (requires(const Component& c) { c.element.advice(1.0, 0.0, c.state(at.q, at.v, at.u).e); }) {
       for (const Component& component : components_) {
         const auto x = component.state(at.q, at.v, at.u);
-        const std::string why = component.element.advice(x.length(), x.rate(), x.e[0]);
+        const std::string why = component.element.advice(x.length(), x.rate(), x.e);
         if (!why.empty()) return std::string(Element::noun) + " '" + component.name + "': " + why;
       }
     }
@@ -145,7 +145,8 @@ class TwoPointTerm final : public model::IntervalTerm {
 
   std::string inadmissible(const Eigen::VectorXd& q) const override {
     for (const Component& component : components_) {
-      const std::string why = component.element.inadmissible((component.a1.value(q) - component.a2.value(q)).norm());
+      const double length = (component.a1.value(q) - component.a2.value(q)).norm();
+      const std::string why = why_inadmissible(component.element, length);
       if (!why.empty()) return std::string(Element::noun) + " '" + component.name + "': " + why;
     }
     return {};

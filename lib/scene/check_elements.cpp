@@ -5,6 +5,34 @@
 #include "scene/scene_check.hpp"
 
 namespace muldi::scene {
+namespace {
+
+/// Whether a described type has required fields.
+struct NeedsInput {
+  bool any = false;
+
+  template <class Value>
+  void operator()(const base::Field& field, const Value&) {
+    any = any || field.need == base::Need::required;
+  }
+  template <class Value>
+  void operator()(const base::Choice& choice, const Value&) {
+    any = any || choice.need == base::Need::required;
+  }
+  void operator()(const base::Later&) const {}
+};
+
+std::vector<ControlQuantity> quantities_of(std::span<const std::string_view> known) {
+  std::vector<ControlQuantity> quantities;
+  for (const std::string_view wanted : known) {
+    for (const auto& word : words(ControlQuantity{})) {
+      if (word.word == wanted) quantities.push_back(word.value);
+    }
+  }
+  return quantities;
+}
+
+}  // namespace
 
 void SceneCheck::check_muscle_ends(const Entry<Muscle>& entry) {
   const std::string_view name = entry.name;
@@ -28,41 +56,64 @@ void SceneCheck::check_muscle_ends(const Entry<Muscle>& entry) {
   if (muscle.from && muscle.to) check_two_ends("muscles", name, *muscle.from, *muscle.to);
 }
 
-void SceneCheck::check_muscle_control(const Entry<Muscle>& entry) {
+template <class Model>
+void SceneCheck::check_muscle_control(const Entry<Muscle>& entry, const Model& model) {
   const std::string_view name = entry.name;
   const Muscle& muscle = entry.value;
   const Entry<Material>* material = scene_.materials.find(muscle.material.name);
-  if (material == nullptr || failed({"materials", material->name}) || failed({"muscles", name, "lumped"})) return;
-  const bool dielectric = lumped_material(muscle, material->value).electric.has_value();
-  if (muscle.control && !dielectric) {
-    context_.add(error_at(muscle.control->origin, "material '" + material->name +
-                                                      "' has no electric law: a control cannot act on this muscle"));
+  if (material == nullptr || failed({"materials", material->name}) || failed({"muscles", name, Model::name})) return;
+  const bool dielectric = material->value.electric.has_value();
+  const bool driven = model.is_driven(dielectric);
+  if (muscle.control && !driven) {
+    const std::string why = dielectric ? "model '" + std::string(Model::name) + "' has no control"
+                                       : "material '" + material->name + "' has no electric law";
+    context_.add(error_at(muscle.control->origin, why + ": a control cannot act on this muscle"));
   }
-  if (!muscle.control && dielectric && !failed({"muscles", name, "control"})) {
-    error({"muscles", name}, "missing key 'control': material '" + material->name + "' is a dielectric");
+  if (!muscle.control && driven && !failed({"muscles", name, "control"})) {
+    error({"muscles", name}, "missing key 'control'" +
+                                 (dielectric ? ": material '" + material->name + "' is a dielectric" : std::string()));
   }
   if (!muscle.control) return;
-  using enum ControlQuantity;
-  check_quantity(*muscle.control, {field, layer_voltage, total_voltage});
+  check_quantity(*muscle.control, quantities_of(Model::quantities));
   const Entry<Control>* control = scene_.controls.find(muscle.control->name);
-  if (control != nullptr && control->value.quantity == layer_voltage && !muscle.layer_thickness &&
+  if (control != nullptr && control->value.quantity == ControlQuantity::layer_voltage && !muscle.layer_thickness &&
       !failed({"controls", control->name}) && !failed({"muscles", name, "layer_thickness"})) {
     error({"muscles", name}, "missing key 'layer_thickness': control '" + control->name + "' is a layer_voltage");
   }
 }
 
-void SceneCheck::check_muscle(const Entry<Muscle>& entry) {
-  if (failed({"muscles", entry.name, "model"})) return;
-  check_muscle_ends(entry);
-  const muscles::LumpedModel& options = entry.value.lumped;
-  if (options.young && options.shear_modulus) {
-    error({"muscles", entry.name, "lumped", "mu"}, "give either young or mu, not both");
+template <class Model>
+void SceneCheck::check_muscle_model(Entry<Muscle>& entry) {
+  std::optional<Model>& options = std::get<std::optional<Model>>(entry.value.options);
+  if (!options) {
+    NeedsInput needs;
+    Model::describe(options.emplace(), needs);
+    if (needs.any) {
+      error({"muscles", entry.name}, "missing key '" + std::string(Model::name) + "': options of the model");
+      return;
+    }
   }
-  check_muscle_control(entry);
+  if (const std::optional<muscles::Fault> fault = options->fault()) {
+    error({"muscles", entry.name, Model::name, fault->key}, std::string(fault->message));
+  }
+  check_muscle_control(entry, *options);
+  const Entry<Material>* material = scene_.materials.find(entry.value.material.name);
+  if (material == nullptr || failed({"materials", material->name, "elastic"})) return;
+  if (!std::holds_alternative<NeoHookean>(material->value.elastic.law)) {
+    error({"muscles", entry.name, "material"}, "model '" + std::string(Model::name) +
+                                                   "' needs a material with elastic model neo_hookean, not '" +
+                                                   material->name + "'");
+  }
 }
 
 void SceneCheck::muscles() {
-  for (const Entry<Muscle>& muscle : scene_.muscles) check_muscle(muscle);
+  for (Entry<Muscle>& entry : scene_.muscles) {
+    if (failed({"muscles", entry.name, "model"})) continue;
+    check_muscle_ends(entry);
+    base::for_each_type(muscles::MuscleModels{}, [&]<class Model>(std::type_identity<Model>) {
+      if (entry.value.model == muscle_model<Model>) check_muscle_model<Model>(entry);
+    });
+  }
 }
 
 void SceneCheck::springs() {

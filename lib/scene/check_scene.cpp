@@ -110,7 +110,7 @@ void SceneCheck::check_direction(Keys keys, const Vec3& direction) {
   if (dot(direction, direction) == 0.0 && exists(keys) && !failed(keys)) error(keys, "the vector is zero");
 }
 
-void SceneCheck::check_quantity(const ControlName& control, std::initializer_list<ControlQuantity> quantities) {
+void SceneCheck::check_quantity(const ControlName& control, const std::vector<ControlQuantity>& quantities) {
   const Entry<Control>* entry = scene_.controls.find(control.name);
   if (entry == nullptr || failed({"controls", control.name})) return;
   const ControlQuantity got = entry->value.quantity;

@@ -72,8 +72,11 @@ void append_below(std::vector<DocumentedField>& rows, const Node& schema, const 
   if (const Node* named = schema.find("additionalProperties"); named != nullptr && named->is_map()) {
     append_below(rows, *named, path + ".<name>");
   }
-  if (const Node* options = schema.find("anyOf"); options != nullptr && !options->items.empty()) {
-    append_below(rows, options->items.front(), path);
+  if (const Node* options = schema.find("anyOf")) {
+    for (std::size_t i = 0; i < options->items.size(); ++i) {
+      const Node& option = options->items[i];
+      if (i == 0 || option.find("properties") != nullptr) append_below(rows, option, path);
+    }
   }
 }
 

@@ -10,18 +10,18 @@
 
 namespace muldi::scene {
 
-/// A linear spring and damper along the line between two points.
+/// A passive element along the line between two points.
 struct Spring {
   Attachment from = {};
   Attachment to = {};
-  muscles::SpringFields element = {};
+  muscles::SpringType type = {};
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit& visit) {
     using namespace base;
     visit(Field{.key = "from", .doc = "first end"}, self.from);
     visit(Field{.key = "to", .doc = "second end"}, self.to);
-    muscles::SpringFields::describe(self.element, visit);
+    visit(Choice{.key = "type", .doc = "law of the spring", .need = Need::optional}, self.type);
   }
   friend bool operator==(const Spring&, const Spring&) = default;
 };

@@ -1,8 +1,12 @@
 #pragma once
 /// Muscles between two points and isolated actuators.
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string_view>
+#include <tuple>
+#include <type_traits>
 
 #include "base/describe.hpp"
 #include "muscles/registry.hpp"
@@ -12,15 +16,32 @@
 
 namespace muldi::scene {
 
-enum class MuscleModel { lumped, fe };
+/// A place in muscles::MuscleModels; `fe` is built from solids.
+enum class MuscleModel : std::size_t { fe = muscles::MuscleModels::size };
+
+template <class Model>
+inline constexpr MuscleModel muscle_model{base::index_in<Model>(muscles::MuscleModels{})};
+
+template <class... Models>
+constexpr std::array<base::Word<MuscleModel>, sizeof...(Models) + 1> muscle_model_words(base::TypeList<Models...>) {
+  return {{{.word = Models::name, .value = muscle_model<Models>, .doc = Models::doc}...,
+           {.word = "fe", .value = MuscleModel::fe, .doc = "the finite element model", .later = true}}};
+}
 
 inline std::span<const base::Word<MuscleModel>> words(MuscleModel) {
-  static constexpr base::Word<MuscleModel> all[] = {
-      {.word = "lumped", .value = MuscleModel::lumped, .doc = "one element between two points"},
-      {.word = "fe", .value = MuscleModel::fe, .doc = "the finite element model", .later = true},
-  };
+  static constexpr auto all = muscle_model_words(muscles::MuscleModels{});
   return all;
 }
+
+/// The options of each model of a list, where given.
+template <class List>
+struct OptionsOf;
+template <class... Models>
+struct OptionsOf<base::TypeList<Models...>> {
+  using Tuple = std::tuple<std::optional<Models>...>;
+};
+/// Those of models that are not chosen are kept, so that a scene can change its model by one word.
+using MuscleOptions = OptionsOf<muscles::MuscleModels>::Tuple;
 
 enum class MuscleEnds { attached, free };
 
@@ -35,7 +56,7 @@ inline std::span<const base::Word<MuscleEnds>> words(MuscleEnds) {
 }
 
 struct Muscle {
-  MuscleModel model = MuscleModel::lumped;
+  MuscleModel model = {};
   MuscleEnds ends = MuscleEnds::attached;
   std::optional<Attachment> from = {};  ///< these two: given where the ends are attached
   std::optional<Attachment> to = {};    ///<
@@ -46,7 +67,7 @@ struct Muscle {
   std::optional<ControlName> control = {};     ///< given where the material is a dielectric
   std::optional<double> rest_length = {};      ///< none: distance of the ends (or `length`) in the scene pose
   std::optional<double> layer_thickness = {};  ///< given where the control is a layer voltage
-  muscles::LumpedModel lumped = {};            ///< its optional fields replace what the muscle and its material say
+  MuscleOptions options = {};
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit& visit) {
@@ -79,16 +100,21 @@ struct Muscle {
                 .range = positive,
                 .need = optional},
           self.layer_thickness);
-    visit(Field{.key = "lumped", .doc = "options of the lumped model", .need = optional}, self.lumped);
+    for_each_type(muscles::MuscleModels{}, [&]<class Model>(std::type_identity<Model>) {
+      visit(Field{.key = Model::name, .doc = "options of the model of this name", .need = optional},
+            std::get<std::optional<Model>>(self.options));
+    });
     visit(Later{.key = "fe", .doc = "the finite element model of muscles"});
   }
   friend bool operator==(const Muscle&, const Muscle&) = default;
 };
 
-/// The cross-section that the lumped model uses.
-const muscles::Section& lumped_section(const Muscle& muscle);
-/// The material that the lumped model uses: that of the muscle with the replacements of `lumped` (a neo-Hookean
-/// replacement is given by mu and Poisson's ratio).
-Material lumped_material(const Muscle& muscle, const Material& material);
+/// Calls visit(options) with those of the muscle's model, if it is one of muscles::MuscleModels.
+template <class Visit>
+void visit_model(const Muscle& muscle, Visit visit) {
+  base::for_each_type(muscles::MuscleModels{}, [&]<class Model>(std::type_identity<Model>) {
+    if (muscle.model == muscle_model<Model>) visit(std::get<std::optional<Model>>(muscle.options).value_or(Model{}));
+  });
+}
 
 }  // namespace muldi::scene

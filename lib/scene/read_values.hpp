@@ -163,7 +163,9 @@ void FieldReader::operator()(const base::Choice& choice, std::variant<Components
   const std::vector<std::string> names{std::string(Components::name)...};
   const Node* node = take(choice.key, false);
   std::optional<std::size_t> chosen;
-  if (node == nullptr) {
+  if (node == nullptr && choice.need == base::Need::optional) {
+    chosen = 0;
+  } else if (node == nullptr) {
     context_.error(map_.mark, "missing key '" + std::string(choice.key) + "' (" + base::joined(names) + ")");
   } else {
     const ReadContext::Scope scope(context_, choice.key);

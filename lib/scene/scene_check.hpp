@@ -3,6 +3,7 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "scene/node.hpp"
 #include "scene/read_context.hpp"
@@ -38,14 +39,17 @@ class SceneCheck {
   const Node* find(Keys keys) const;
 
   void check_body(const Entry<Body>& body);
-  void check_muscle(const Entry<Muscle>& muscle);
   void check_muscle_ends(const Entry<Muscle>& muscle);
-  void check_muscle_control(const Entry<Muscle>& muscle);
+  /// The options of its model, which are given the defaults if the scene says nothing.
+  template <class Model>
+  void check_muscle_model(Entry<Muscle>& muscle);
+  template <class Model>
+  void check_muscle_control(const Entry<Muscle>& muscle, const Model& model);
   void check_load(const Entry<Load>& load);
   /// Both ends of an element that acts between two points.
   void check_two_ends(std::string_view section, std::string_view name, const Attachment& from, const Attachment& to);
   /// That a control, if it exists, is of one of these quantities.
-  void check_quantity(const ControlName& control, std::initializer_list<ControlQuantity> quantities);
+  void check_quantity(const ControlName& control, const std::vector<ControlQuantity>& quantities);
   void resolve(std::string_view body, BodyPoint& point);
   void check_direction(Keys keys, const Vec3& direction);
 

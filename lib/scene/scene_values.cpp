@@ -69,27 +69,6 @@ const Drive* Joint::drive(std::size_t i) const {
 
 long Dynamics::n_steps() const { return std::lround(duration / step); }
 
-const muscles::Section& lumped_section(const Muscle& muscle) {
-  return muscle.lumped.section ? *muscle.lumped.section : muscle.section;
-}
-
-Material lumped_material(const Muscle& muscle, const Material& material) {
-  Material result = material;
-  const muscles::LumpedModel& options = muscle.lumped;
-  if (options.density) result.density = *options.density;
-  if (options.relative_permittivity) {
-    result.electric = Electric{.law = IdealDielectric{.relative_permittivity = *options.relative_permittivity}};
-  }
-  if (options.viscosity) result.viscous = Viscous{.law = KelvinVoigt{.viscosity = *options.viscosity}};
-  if (options.shear_modulus || options.young) {
-    NeoHookean& law = std::get<NeoHookean>(result.elastic.law);
-    const double nu = law.poisson_ratio();
-    const double mu = options.shear_modulus ? *options.shear_modulus : *options.young / (2 * (1 + nu));
-    law = {.poisson = nu, .mu = mu};
-  }
-  return result;
-}
-
 std::string path_of_file(const Scene& scene, const std::string& file) {
   const std::string& own = scene.origin.place.file;
   const std::size_t slash = own.rfind('/');

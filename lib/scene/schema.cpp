@@ -132,8 +132,13 @@ class SchemaVisitor {
 
   template <class... Components>
   void operator()(const base::Choice& choice, std::variant<Components...>&) {
-    add(choice.key, choice.doc, choices({{Components::name, Components::doc}...}), true);
-    (add_component<Components>(choice.key), ...);
+    const bool needed = choice.need == base::Need::required;
+    const std::string_view names[] = {Components::name...};
+    Node options = choices({{Components::name, Components::doc}...});
+    if (!needed) options.with("default", text(names[0]));
+    add(choice.key, choice.doc, std::move(options), needed);
+    // Without the key the condition of the first component must hold, so that it does not ask for the key.
+    (add_component<Components>(choice.key, needed || Components::name != names[0]), ...);
   }
 
   void operator()(const base::Later&) {}
@@ -154,16 +159,18 @@ class SchemaVisitor {
     if (needed) required_.items.push_back(text(key));
   }
 
-  /// The fields of a component stand beside the key that names it; those that it needs are asked for by a condition.
+  /// The fields of a component stand beside the key that names it; those that it needs are asked for by a condition,
+  /// which holds without the key where it is not `with_key`.
   template <class Component>
-  void add_component(std::string_view key) {
+  void add_component(std::string_view key, bool with_key) {
     Component component;
     Node outer_required = std::exchange(required_, Node::sequence());
     Component::describe(component, *this);
     Node needed = std::exchange(required_, std::move(outer_required));
     if (needed.items.empty()) return;
     Node named = Node::map().with(std::string(key), Node::map().with("const", text(Component::name)));
-    Node condition = Node::map().with("properties", std::move(named)).with("required", Node::sequence({text(key)}));
+    Node condition = Node::map().with("properties", std::move(named));
+    if (with_key) condition.with("required", Node::sequence({text(key)}));
     conditions_.items.push_back(
         Node::map().with("if", std::move(condition)).with("then", Node::map().with("required", std::move(needed))));
   }

@@ -119,14 +119,16 @@ std::unique_ptr<model::Model> make_model(const RigidSystem& system) {
   add_elements(system.muscles, system.gravity, *model);
   add_elements(system.springs, system.gravity, *model);
   std::vector<double> plain;
-  std::vector<muscles::FreeActuator> actuators = system.actuators;
-  for (muscles::FreeActuator& actuator : actuators) {
+  auto actuators = system.actuators;
+  for (auto& actuator : actuators) {
     actuator.node = static_cast<int>(model->node_sizes.size());
     actuator.dof = 12 * system.n_bodies() + static_cast<int>(plain.size());
     model->node_sizes.push_back(1);
     plain.push_back(actuator.element.length);
   }
-  if (!actuators.empty()) model->terms.push_back(std::make_unique<muscles::FreeActuatorTerm>(actuators));
+  if (!actuators.empty()) {
+    model->terms.push_back(std::make_unique<muscles::FreeActuatorTerm<muscles::LumpedDea>>(actuators));
+  }
   model->manifold =
       std::make_unique<multibody::TreeManifold>(std::move(tree), system.poses, std::move(plain), system.length);
   model->bind();

@@ -57,7 +57,7 @@ struct RigidSystem {
   std::vector<multibody::Load> loads;
   std::vector<Between<muscles::LumpedDea>> muscles;
   std::vector<Between<muscles::Spring>> springs;
-  std::vector<muscles::FreeActuator> actuators;  ///< node and dof are filled in by make_model
+  std::vector<muscles::FreeActuator<muscles::LumpedDea>> actuators;  ///< node and dof are filled in by make_model
   std::vector<model::Control> controls;
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();
   double length = 100.0;

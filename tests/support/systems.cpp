@@ -125,7 +125,7 @@ RigidSystem membrane(double field, double viscosity) {
   system.length = 1.0;
   system.actuators.push_back({.name = "membrane",
                               .element = silicone({muscles::SquareSection{20.0}}, 1.0, 3.7, viscosity),
-                              .field = {.control = 0}});
+                              .controls = {muscles::ControlInput{.control = 0}}});
   system.controls = {field_control("field", field)};
   return system;
 }
@@ -135,7 +135,7 @@ RigidSystem round_actuator(double field, double viscosity) {
   system.length = 40.0;
   system.actuators.push_back({.name = "round",
                               .element = silicone({muscles::RoundSection{10.0}}, 40.0, 3.7, viscosity),
-                              .field = {.control = 0}});
+                              .controls = {muscles::ControlInput{.control = 0}}});
   system.controls = {field_control("field", field)};
   return system;
 }

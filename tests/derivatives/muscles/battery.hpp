@@ -1,30 +1,36 @@
 #pragma once
-/// Examples of every two-point element and random states: the battery that each element of the registry must pass.
+/// Examples of every two-point element of the registry and random states, for the battery that each must pass.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <random>
+#include <type_traits>
 #include <vector>
 
 #include "muscles/registry.hpp"
-#include "muscles/two_point.hpp"
+#include "muscles/two_point_term.hpp"
+#include "support/plausible.hpp"
+#include "support/types_of.hpp"
 
 namespace muldi::test {
 
 inline constexpr double eps0 = 8.8542e-12;
 
-/// A list of types as GoogleTest takes it.
-template <class List>
-struct TypesOf;
-template <class... Types>
-struct TypesOf<base::TypeList<Types...>> {
-  using type = testing::Types<Types...>;
-};
-
-/// Examples of one element type; a new element of the registry needs a specialisation.
-template <class Element>
-std::vector<Element> examples();
+/// The elements of a list that are on the fast path.
+template <class... Found>
+base::TypeList<Found...> axial_among(base::TypeList<>, base::TypeList<Found...> found) {
+  return found;
+}
+template <class First, class... Rest, class... Found>
+auto axial_among(base::TypeList<First, Rest...>, base::TypeList<Found...> found) {
+  if constexpr (muscles::AxialElement<First>) {
+    return axial_among(base::TypeList<Rest...>{}, base::TypeList<Found..., First>{});
+  } else {
+    return axial_among(base::TypeList<Rest...>{}, found);
+  }
+}
+using AxialTypes = decltype(axial_among(muscles::TwoPointTypes{}, base::TypeList<>{}));
 
 /// Silicone muscle of the revolute joint: Z = 100 mm, d = 10 mm.
 inline muscles::LumpedDea silicone_muscle() {
@@ -38,8 +44,25 @@ inline muscles::LumpedDea silicone_muscle() {
           .electric_law = muscles::ElectricLaw::ideal(3.7, eps0)};
 }
 
+/// What a scene gives to the silicone muscle.
+inline muscles::MuscleGiven silicone_given() {
+  return {.section = {muscles::RoundSection{10.0}},
+          .length = 100.0,
+          .layer_thickness = 0.01,
+          .density = 1e-3,
+          .shear_modulus = 0.7 / 3.0,
+          .viscosity = 10.0,
+          .electric_law = muscles::ElectricLaw::ideal(3.7, eps0),
+          .eps0 = eps0};
+}
+
+/// Elements worth testing beside those that scenes make.
+template <class Element>
+std::vector<Element> hand_picked() {
+  return {};
+}
 template <>
-inline std::vector<muscles::LumpedDea> examples() {
+inline std::vector<muscles::LumpedDea> hand_picked() {
   std::vector<muscles::LumpedDea> list;
   for (const muscles::Inertia inertia : {muscles::Inertia::consistent, muscles::Inertia::thesis}) {
     for (const muscles::ElectricLaw& law :
@@ -55,10 +78,28 @@ inline std::vector<muscles::LumpedDea> examples() {
   }
   return list;
 }
-
 template <>
-inline std::vector<muscles::Spring> examples() {
+inline std::vector<muscles::Spring> hand_picked() {
   return {{.stiffness = 2.0, .rest_length = 80.0, .damping = 0.3}, {.stiffness = 1.5}};
+}
+
+/// Examples of one element type: made by the components of the registry from their described fields, and hand-picked.
+template <class Element>
+std::vector<Element> examples() {
+  std::vector<Element> list = hand_picked<Element>();
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    base::for_each_type(muscles::MuscleModels{}, [&]<class Model>(std::type_identity<Model>) {
+      if constexpr (std::is_same_v<muscles::MuscleElement<Model>, Element>) {
+        list.push_back(plausible<Model>(seed).element(silicone_given()));
+      }
+    });
+    base::for_each_type(muscles::SpringTypes{}, [&]<class Type>(std::type_identity<Type>) {
+      if constexpr (std::is_same_v<muscles::SpringElement<Type>, Element>) {
+        list.push_back(plausible<Type>(seed).element(100.0));
+      }
+    });
+  }
+  return list;
 }
 
 inline Eigen::Vector3d random_vector(std::mt19937& random, double size) {

@@ -25,7 +25,7 @@ void expect_close(double given, double expected, std::size_t entry) {
 
 template <class Element>
 class AxialElementTest : public testing::Test {};
-TYPED_TEST_SUITE(AxialElementTest, test::TypesOf<muscles::TwoPointTypes>::type);
+TYPED_TEST_SUITE(AxialElementTest, test::TypesOf<test::AxialTypes>::type);
 
 TYPED_TEST(AxialElementTest, HandDerivativesAreThoseOfTheEnergies) {
   std::mt19937 random(1);
@@ -65,7 +65,8 @@ TYPED_TEST(AxialElementTest, FirstDerivativesAreThoseOfTheComplexStep) {
     const auto lagrangian_and_force = [&](const Eigen::VectorXcd& at) {
       Controls<Complex, n> e;
       for (std::size_t c = 0; c < e.size(); ++c) e[c] = x.e[c];
-      const Complex l = element.kinetic(at[0], at[1]) - element.elastic(at[0]) - element.electric(at[0], e);
+      const Complex l = muscles::kinetic_energy(element, at[0], at[1]) - element.elastic(at[0]) -
+                        muscles::electric_energy(element, at[0], e);
       return Eigen::VectorXcd{{l, element.force(at[0], at[1], e)}};
     };
     const auto reference = math::complex_step_jacobian(lagrangian_and_force, Eigen::Vector2d(x.length(), x.rate()));

@@ -117,6 +117,7 @@ struct Research {
   S force(const muscles::TwoPoint<S, 2>& x) const {
     return x.e[1] - 0.4 * x.rate() * sqrt(1.0 + x.rate() * x.rate()) - 0.1 * x.v1(0);
   }
+  static bool dissipates() { return true; }
   static std::string inadmissible(double z) { return z < 10.0 ? "too short to be true" : ""; }
 };
 

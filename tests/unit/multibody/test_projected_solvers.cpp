@@ -137,7 +137,7 @@ TEST(ProjectedSolvers, AgreeOnTreesWithSingleUnknowns) {
     test::RigidSystem system = any_forest(random);
     couple_neighbours(system);
     for (int k = 0; k < 3; ++k) {
-      system.actuators.push_back({.name = "a", .element = {.length = 2.0 + k}, .field = {}});
+      system.actuators.push_back({.name = "a", .element = {.length = 2.0 + k}, .controls = {}});
     }
     expect_same(random, system, {"tree", "dense", "bordered"});
   }

@@ -1,10 +1,13 @@
 /// Recorded quantities of muscles and springs.
-#include "muscles/muscle_observables.hpp"
+#include "muscles/element_observables.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <map>
+
+#include "muscles/lumped_dea.hpp"
+#include "muscles/spring.hpp"
 
 namespace muldi::muscles {
 namespace {
@@ -47,7 +50,8 @@ const Eigen::VectorXd velocity{{0.5, 0.0, 0.0}};
 TEST(MuscleObservables, AreThoseOfTheResultFormat) {
   TwoPointComponent<LumpedDea> component{"upper", muscle(), particle(), origin};
   component.controls[0] = {.control = 0, .factor = field_per_layer_voltage(0.01)};
-  const auto at = values(muscle_observables(component, 0.01), position, velocity);
+  component.element.layer_thickness = 0.01;
+  const auto at = values(observables_of(component), position, velocity);
   ASSERT_EQ(at.size(), 7u);
   EXPECT_DOUBLE_EQ(at.at("muscles/upper/length"), 2.5);
   EXPECT_DOUBLE_EQ(at.at("muscles/upper/stretch"), 1.25);
@@ -59,8 +63,8 @@ TEST(MuscleObservables, AreThoseOfTheResultFormat) {
 }
 
 TEST(MuscleObservables, LackVoltageAndChargeWithoutALayerThickness) {
-  const FreeActuator actuator{"free", muscle(), 0, 0, {.constant = 1e4}};
-  const auto at = values(muscle_observables(actuator, std::nullopt), Eigen::VectorXd{{1.5}}, Eigen::VectorXd{{-0.1}});
+  const FreeActuator<LumpedDea> actuator{"free", muscle(), 0, 0, {ControlInput{.constant = 1e4}}};
+  const auto at = values(observables_of(actuator), Eigen::VectorXd{{1.5}}, Eigen::VectorXd{{-0.1}});
   ASSERT_EQ(at.size(), 5u);
   EXPECT_DOUBLE_EQ(at.at("muscles/free/length"), 1.5);
   EXPECT_DOUBLE_EQ(at.at("muscles/free/stretch"), 0.75);
@@ -70,7 +74,7 @@ TEST(MuscleObservables, LackVoltageAndChargeWithoutALayerThickness) {
 TEST(SpringObservables, AreLengthAndPull) {
   const TwoPointComponent<Spring> spring{"s1", Spring{.stiffness = 2.0, .rest_length = 2.0, .damping = 0.1}, particle(),
                                          origin};
-  const auto at = values(spring_observables(spring), position, velocity);
+  const auto at = values(observables_of(spring), position, velocity);
   ASSERT_EQ(at.size(), 2u);
   EXPECT_DOUBLE_EQ(at.at("springs/s1/length"), 2.5);
   EXPECT_DOUBLE_EQ(at.at("springs/s1/force"), 2.0 * 0.5 + 0.1 * 0.3);

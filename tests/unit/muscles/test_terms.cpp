@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "muscles/free_actuator_term.hpp"
-#include "muscles/section.hpp"
+#include "muscles/lumped_dea.hpp"
 #include "muscles/spring.hpp"
 #include "muscles/two_point_term.hpp"
 
@@ -48,7 +48,9 @@ TEST(TwoPointTerm, HangsHalfOfItsWeightOnEachEnd) {
   const TwoPointTerm<LumpedDea> term({{"m", muscle, particle(), origin()}}, gravity);
   const Eigen::VectorXd q{{2.0, 0.0, 0.0}};
   const Eigen::VectorXd v = Eigen::VectorXd::Zero(3);
-  model::IntervalForces out{Eigen::VectorXd::Zero(3), Eigen::VectorXd::Zero(3)};
+  model::IntervalForces out;
+  out.force = Eigen::VectorXd::Zero(3);
+  out.momentum = Eigen::VectorXd::Zero(3);
   term.add_forces({q, q, q, v, {}, 1.0}, out);
   // At rest length and without field nothing but the weight acts: m = 0.8 g.
   EXPECT_NEAR((out.force - Eigen::Vector3d(0.0, -0.4 * 9.81e-3, 0.0)).norm(), 0.0, 1e-15);
@@ -112,13 +114,15 @@ TEST(TwoPointTerm, TakesASpringWithoutRestLengthThroughItsOtherEnd) {
 
 /// Length of the membrane after `duration` by the variational midpoint rule from rest at 30 kV/mm.
 double membrane_after(double duration, double dt) {
-  FreeActuatorTerm term({{"m", silicone(1.0), 0, 0, {.constant = 3e4}}});
+  FreeActuatorTerm<LumpedDea> term({{"m", silicone(1.0), 0, 0, {ControlInput{.constant = 3e4}}}});
   model::PatternRequest request;
   term.request(request);
   const math::BlockPattern pattern({1}, request.pairs());
   term.bind(pattern);
   math::BlockMatrix K(pattern);
-  model::IntervalForces out{Eigen::VectorXd::Zero(1), Eigen::VectorXd::Zero(1)};
+  model::IntervalForces out;
+  out.force = Eigen::VectorXd::Zero(1);
+  out.momentum = Eigen::VectorXd::Zero(1);
   Eigen::VectorXd q0 = Eigen::VectorXd::Ones(1);
   double p = 0.0;
   const int n_steps = static_cast<int>(std::lround(duration / dt));
@@ -153,7 +157,7 @@ TEST(FreeActuatorTerm, MovesLikeTheMembraneOfTheThesis) {
 }
 
 TEST(FreeActuatorTerm, NamesItsPartsAndWhatItRefuses) {
-  const FreeActuatorTerm term({{"membrane", silicone(1.0), 0, 0, {}}});
+  const FreeActuatorTerm<LumpedDea> term({{"membrane", silicone(1.0), 0, 0, {}}});
   EXPECT_EQ(term.parts(), std::vector<std::string>{"muscles/membrane"});
   EXPECT_EQ(term.inadmissible(Eigen::VectorXd{{0.9}}), "");
   EXPECT_EQ(term.inadmissible(Eigen::VectorXd{{0.15}}), "muscle 'membrane': stretch 0.15 below 0.2");

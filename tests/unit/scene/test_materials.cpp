@@ -34,35 +34,6 @@ TEST(NeoHookean, SiliconeOfTheThesisIsIncompressible) {
   EXPECT_EQ(silicone.poisson_ratio(), 0.5);
 }
 
-Material silicone() {
-  return {.density = 1e-3,
-          .elastic = {.law = NeoHookean{.young = 0.7, .poisson = 0.5}},
-          .electric = Electric{.law = IdealDielectric{.relative_permittivity = 3.7}},
-          .viscous = Viscous{.law = KelvinVoigt{.viscosity = 10}}};
-}
-
-TEST(LumpedMaterial, IsTheMaterialWithoutReplacements) { EXPECT_EQ(lumped_material(Muscle{}, silicone()), silicone()); }
-
-TEST(LumpedMaterial, ReplacementsHoldForTheModelOnly) {
-  Muscle muscle;
-  muscle.section = {.shape = muscles::RoundSection{.diameter = 10}};
-  muscle.lumped.section = muscles::Section{.shape = muscles::SquareSection{.edge = 11}};
-  muscle.lumped.density = 2e-3;
-  muscle.lumped.young = 1.4;
-  muscle.lumped.relative_permittivity = 3.1;
-  muscle.lumped.viscosity = 0.0;
-  const Material material = lumped_material(muscle, silicone());
-  EXPECT_EQ(material.density, 2e-3);
-  EXPECT_DOUBLE_EQ(std::get<NeoHookean>(material.elastic.law).shear_modulus(), 1.4 / 3);
-  EXPECT_EQ(std::get<IdealDielectric>(material.electric->law).relative_permittivity, 3.1);
-  EXPECT_EQ(std::get<KelvinVoigt>(material.viscous->law).viscosity, 0.0);
-  EXPECT_EQ(lumped_section(muscle), *muscle.lumped.section);
-  muscle.lumped = {};
-  muscle.lumped.shear_modulus = 0.3;
-  EXPECT_EQ(std::get<NeoHookean>(lumped_material(muscle, silicone()).elastic.law).shear_modulus(), 0.3);
-  EXPECT_EQ(lumped_section(muscle), muscle.section);
-}
-
 TEST(Materials, InvariantsTakePermittivityUnits) {
   const Scene scene = scene_of(
       "materials:\n"
