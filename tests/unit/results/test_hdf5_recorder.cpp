@@ -232,16 +232,15 @@ TEST(Hdf5Recorder, KeepsCompleteRowsWhenTheDiskIsFull) {
 TEST(Hdf5Recorder, LeavesNoFileBehindIfTheStartFails) {
   const Scratch scratch;
   const std::string path = scratch / "a.h5";
-  EXPECT_EQ(run_with_file_limit(
-                1000,
-                [&] {
-                  const std::string message = message_of<base::EnvironmentError>([&] {
-                    Hdf5Recorder recorder({.path = path});
-                    Recording recording(recorder);
-                    recorder.start();
-                  });
-                  return message == "cannot write '" + path + "': File too large" ? 7 : 8;
-                }),
+  EXPECT_EQ(run_with_file_limit(1000,
+                                [&] {
+                                  const std::string message = message_of<base::EnvironmentError>([&] {
+                                    Hdf5Recorder recorder({.path = path});
+                                    Recording recording(recorder);
+                                    recorder.start();
+                                  });
+                                  return message == "cannot write '" + path + "': File too large" ? 7 : 8;
+                                }),
             7);
   EXPECT_FALSE(std::filesystem::exists(path));
 }
