@@ -1,0 +1,68 @@
+#include "math/sparse_ordering.hpp"
+
+#include <amd.h>
+#include <metis.h>
+
+#include <numeric>
+
+#include "base/error.hpp"
+
+namespace muldi::math {
+namespace {
+
+std::vector<int> natural_order(const NodeGraph& graph) {
+  std::vector<int> order(graph.weights.size());
+  std::iota(order.begin(), order.end(), 0);
+  return order;
+}
+
+std::vector<int> minimum_degree_order(const NodeGraph& graph) {
+  std::vector<int> order = natural_order(graph);
+  const int status =
+      amd_order(graph.n_nodes(), graph.start.data(), graph.neighbours.data(), order.data(), nullptr, nullptr);
+  MULDI_EXPECT(status == AMD_OK, "AMD accepts every graph with ascending neighbours");
+  return order;
+}
+
+std::vector<int> nested_dissection_order(const NodeGraph& graph) {
+  static_assert(sizeof(idx_t) == sizeof(int), "METIS is built with 32-bit indices");
+  idx_t n = graph.n_nodes();
+  idx_t options[METIS_NOPTIONS];
+  METIS_SetDefaultOptions(options);
+  options[METIS_OPTION_SEED] = 1;
+  options[METIS_OPTION_NUMBERING] = 0;
+  // METIS takes its input by pointers to what it could change, and does not change it.
+  NodeGraph copy = graph;
+  std::vector<int> order(graph.weights.size());
+  std::vector<int> position(graph.weights.size());
+  const int status = METIS_NodeND(&n, copy.start.data(), copy.neighbours.data(), copy.weights.data(), options,
+                                  order.data(), position.data());
+  MULDI_EXPECT(status == METIS_OK, "METIS accepts every graph that fits into memory");
+  return order;
+}
+
+}  // namespace
+
+std::string_view name_of(Ordering ordering) {
+  switch (ordering) {
+    case Ordering::automatic:
+      return "automatic";
+    case Ordering::natural:
+      return "natural";
+    case Ordering::minimum_degree:
+      return "minimum_degree";
+    case Ordering::nested_dissection:
+      return "nested_dissection";
+  }
+  return "";
+}
+
+std::vector<int> elimination_order(const NodeGraph& graph, Ordering ordering) {
+  MULDI_EXPECT(ordering != Ordering::automatic, "automatic is a choice among orders, not an order");
+  if (graph.neighbours.empty()) return natural_order(graph);  // the libraries want edges
+  if (ordering == Ordering::minimum_degree) return minimum_degree_order(graph);
+  if (ordering == Ordering::nested_dissection) return nested_dissection_order(graph);
+  return natural_order(graph);
+}
+
+}  // namespace muldi::math

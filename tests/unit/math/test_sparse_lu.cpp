@@ -1,0 +1,73 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+
+#include "base/error.hpp"
+#include "math/sparse_ldlt.hpp"
+#include "math/sparse_lu.hpp"
+#include "support/box_matrix.hpp"
+
+namespace muldi::math {
+namespace {
+
+TEST(FullMatrix, HoldsBothTrianglesAndTakesNewValues) {
+  test::BoxProblem problem;
+  problem.cells = {2, 1, 3};
+  const SymmetricBlockPattern pattern = test::box_pattern(problem);
+  SymmetricBlockMatrix matrix = test::box_matrix(problem, pattern);
+  Eigen::SparseMatrix<double> full = full_matrix(matrix);
+  EXPECT_EQ(Eigen::MatrixXd(full), matrix.dense());
+  for (double& value : matrix.values()) value *= 3.0;
+  refill(full, matrix);
+  EXPECT_EQ(Eigen::MatrixXd(full), matrix.dense());
+}
+
+TEST(SparseLu, SolvesAnUnsymmetricMatrixAgainAfterNewValues) {
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Random(30, 30);
+  SparseLu lu;
+  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(30, -1.0, 1.0);
+  Eigen::VectorXd x(30);
+  for (int repeat = 0; repeat < 3; ++repeat) {
+    dense(repeat, 2 * repeat) += 5.0;
+    const Eigen::SparseMatrix<double> matrix = dense.sparseView();
+    ASSERT_EQ(lu.factorise(matrix), LuOutcome::ok);
+    lu.solve(b, x);
+    EXPECT_LT((dense * x - b).norm(), 1e-12);
+    EXPECT_GT(lu.reciprocal_condition(), 0.0);
+  }
+}
+
+TEST(SparseLu, SaysThatAMatrixIsSingular) {
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Identity(3, 3);
+  dense(2, 2) = 0.0;
+  SparseLu lu;
+  EXPECT_EQ(lu.factorise(Eigen::SparseMatrix<double>(dense.sparseView(0.0, -1.0))), LuOutcome::singular);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(3);
+  const Eigen::VectorXd b = Eigen::VectorXd::Ones(3);
+  EXPECT_THROW(lu.solve(b, x), base::ContractError);
+  EXPECT_EQ(lu.reciprocal_condition(), 0.0);
+}
+
+TEST(SparseLu, AgreesWithTheSymmetricFactorOnNearlyIncompressibleCells) {
+  test::BoxProblem problem;
+  problem.cells = {6, 5, 7};
+  problem.bulk_modulus = 1000.0;
+  const SymmetricBlockPattern pattern = test::box_pattern(problem);
+  const NodeMask mask = test::box_mask(problem);
+  SymmetricBlockMatrix matrix = test::box_matrix(problem, pattern);
+  matrix.constrain(mask);
+  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(pattern.n_rows(), 1.0, -2.0).array().sin();
+  Eigen::VectorXd x(b.size());
+  SparseLu lu;
+  ASSERT_EQ(lu.factorise(full_matrix(matrix)), LuOutcome::ok);
+  lu.solve(b, x);
+  const LdltAnalysis analysis(pattern, mask);
+  SparseLdlt ldlt(analysis);
+  ASSERT_TRUE(ldlt.factorise(matrix).ok);
+  Eigen::VectorXd y = b;
+  ldlt.solve(y);
+  EXPECT_LT((x - y).norm(), 1e-11 * y.norm()) << "condition number about 1e5";
+}
+
+}  // namespace
+}  // namespace muldi::math
