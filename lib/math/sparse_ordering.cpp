@@ -1,6 +1,7 @@
 #include "math/sparse_ordering.hpp"
 
 #include <amd.h>
+#include <dlfcn.h>
 #include <metis.h>
 
 #include <numeric>
@@ -24,19 +25,35 @@ std::vector<int> minimum_degree_order(const NodeGraph& graph) {
   return order;
 }
 
+/// METIS, opened by the first graph that wants it: runs without large matrices start without it.
+struct Metis {
+  decltype(&METIS_SetDefaultOptions) set_default_options = nullptr;
+  decltype(&METIS_NodeND) node_nd = nullptr;
+
+  Metis() {
+    void* const library = ::dlopen("libmetis.so.5", RTLD_NOW | RTLD_LOCAL);
+    if (library == nullptr) return;
+    set_default_options = reinterpret_cast<decltype(set_default_options)>(::dlsym(library, "METIS_SetDefaultOptions"));
+    node_nd = reinterpret_cast<decltype(node_nd)>(::dlsym(library, "METIS_NodeND"));
+  }
+  bool found() const { return set_default_options != nullptr && node_nd != nullptr; }
+};
+
 std::vector<int> nested_dissection_order(const NodeGraph& graph) {
   static_assert(sizeof(idx_t) == sizeof(int), "METIS is built with 32-bit indices");
+  static const Metis metis;
+  if (!metis.found()) return minimum_degree_order(graph);
   idx_t n = graph.n_nodes();
   idx_t options[METIS_NOPTIONS];
-  METIS_SetDefaultOptions(options);
+  metis.set_default_options(options);
   options[METIS_OPTION_SEED] = 1;
   options[METIS_OPTION_NUMBERING] = 0;
   // METIS takes its input by pointers to what it could change, and does not change it.
   NodeGraph copy = graph;
   std::vector<int> order(graph.weights.size());
   std::vector<int> position(graph.weights.size());
-  const int status = METIS_NodeND(&n, copy.start.data(), copy.neighbours.data(), copy.weights.data(), options,
-                                  order.data(), position.data());
+  const int status = metis.node_nd(&n, copy.start.data(), copy.neighbours.data(), copy.weights.data(), options,
+                                   order.data(), position.data());
   MULDI_EXPECT(status == METIS_OK, "METIS accepts every graph that fits into memory");
   return order;
 }
