@@ -12,6 +12,7 @@
 #include "pipeline/run.hpp"
 #include "pipeline/summary.hpp"
 #include "results/hdf5_recorder.hpp"
+#include "results/xdmf.hpp"
 #include "scene/read_scene.hpp"
 
 namespace muldi::app {
@@ -95,6 +96,11 @@ int run(const RunArguments& arguments) {
   };
   const pipeline::Outcome outcome = pipeline::run(*scene, *built, recorder, context, earlier);
   bar.clear();
+  if (!built->model->histories.empty()) {
+    for (const std::string& side : results::write_xdmf(output.path)) {
+      base::log_verbose(base::format("fields for ParaView: {}", side));
+    }
+  }
   report(outcome, output.path);
   report_phases(context.phases);
   return exit_code(outcome.status);

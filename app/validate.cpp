@@ -21,7 +21,7 @@ int validate(const std::vector<std::string>& scenes, const std::vector<std::stri
       for (const auto* list : {&scene.warnings, &built.notes}) {
         for (const base::Diagnostic& diagnostic : *list) base::log_plain(base::to_string(diagnostic));
       }
-      if (const auto earlier = earlier_state(scene)) pipeline::state_of(*earlier, scene, *built.manifold);
+      if (const auto earlier = earlier_state(scene)) pipeline::state_of(*earlier, scene, *built.model);
       pipeline::initial_rates(scene, built, pipeline::initial_coordinates(scene, built));
       std::fputs((path + ": " + pipeline::summary(scene, built)).c_str(), stdout);
     } catch (const base::InputError& error) {

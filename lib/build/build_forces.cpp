@@ -1,7 +1,7 @@
 #include "base/error.hpp"
 #include "build/build_terms.hpp"
 #include "build/place_bodies.hpp"
-#include "multibody/joint_forces.hpp"
+#include "multibody/cut_joint_forces.hpp"
 #include "multibody/loads.hpp"
 
 namespace muldi::build {
@@ -48,11 +48,10 @@ void refuse_rotation_vectors(const scene::Entry<scene::Joint>& entry, const mult
 }
 
 multibody::JointForce force_of(TermContext& context, const scene::Entry<scene::Joint>& entry,
-                               const multibody::Joint& joint, const ScalarMotion& scalar, int x_index) {
+                               const ScalarMotion& scalar) {
   const scene::Joint& said = entry.value;
   const std::size_t i = scalar.coordinate;
-  multibody::JointForce force{.part = "joints/" + entry.name,
-                              .coordinate = multibody::JointCoordinate(joint, scalar.motion, x_index)};
+  multibody::JointForce force{.part = "joints/" + entry.name};
   force.stiffness = value_at(said.stiffness, i);
   force.rest = value_at(said.rest, i);
   force.damping = value_at(said.damping, i);
@@ -72,25 +71,32 @@ multibody::JointForce force_of(TermContext& context, const scene::Entry<scene::J
 }  // namespace
 
 void add_joint_forces(TermContext& context) {
-  std::vector<multibody::JointForce> forces;
+  std::vector<multibody::TreeJointForce> forces;
+  std::vector<multibody::CutJointForce> cut_forces;
   std::vector<base::Diagnostic> errors;
   for (std::size_t j = 0; j < context.scene.joints.size(); ++j) {
     const auto& entry = context.scene.joints[j];
     const multibody::Joint& joint = context.built.joint(j);
     const multibody::TreeLink* link = context.built.link_of_joint(j);
     refuse_rotation_vectors(entry, joint, errors);
-    // Scalar coordinates come before a ball in x, so a scalar's index in x is that of its coordinate.
     for (const ScalarMotion& scalar : scalar_motions(joint)) {
       if (!has_any(entry.value, scalar.coordinate)) continue;
-      const int x_index = link != nullptr ? link->first_coordinate + static_cast<int>(scalar.coordinate) : -1;
-      forces.push_back(force_of(context, entry, joint, scalar, x_index));
-      context.built.assembled.damping |= forces.back().damping > 0.0;
+      const multibody::JointForce law = force_of(context, entry, scalar);
+      context.built.assembled.damping |= law.damping > 0.0;
+      if (link == nullptr) {
+        cut_forces.push_back({law, multibody::JointCoordinate(joint, scalar.motion)});
+        continue;
+      }
+      // Scalar coordinates come before a ball in x, so a scalar's index in x is that of its coordinate.
+      const auto k = static_cast<int>(scalar.coordinate);
+      forces.push_back({law, link->first_coordinate + k, link->first_rate + k});
     }
   }
   if (!errors.empty()) throw base::InputError(std::move(errors));
-  context.built.assembled.joint_forces = forces.size();
-  if (!forces.empty())
-    context.built.model->terms.push_back(std::make_unique<multibody::JointForces>(std::move(forces)));
+  context.built.assembled.joint_forces = forces.size() + cut_forces.size();
+  auto& terms = context.built.model->terms;
+  if (!forces.empty()) terms.push_back(std::make_unique<multibody::JointForces>(std::move(forces)));
+  if (!cut_forces.empty()) terms.push_back(std::make_unique<multibody::CutJointForces>(std::move(cut_forces)));
 }
 
 void add_loads(TermContext& context) {

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "build/build_joints.hpp"
+#include "build/build_solids.hpp"
 #include "build/build_terms.hpp"
 #include "build/place_bodies.hpp"
 #include "multibody/rigid_body.hpp"
@@ -125,6 +126,7 @@ BuiltModel build_model(const scene::Scene& scene) {
   add_springs(context);
   add_joint_forces(context);
   add_loads(context);
+  add_solids(scene, controls, built);
   built.model->controls = controls.take();
   built.model->bind();
   built.linear = linear_solver(scene, built);

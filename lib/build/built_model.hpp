@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/diagnostic.hpp"
+#include "fem/solid/solid_observables.hpp"
 #include "model/model.hpp"
 #include "multibody/multibody_observables.hpp"
 #include "multibody/tree_manifold.hpp"
@@ -21,15 +22,17 @@ struct Assembled {
   std::size_t joint_forces = 0;
   bool damping = false;  ///< any viscous term
   bool gravity = false;
-  bool electric = false;  ///< any muscle that can be charged
+  bool electric = false;  ///< any muscle or solid that can be charged
 };
 
 /// The model with what it keeps alive, and the way back to the names of the scene.
 struct BuiltModel {
   std::unique_ptr<model::Model> model;
-  const multibody::TreeManifold* manifold = nullptr;       ///< of the model
-  std::unique_ptr<multibody::JointRecords> joint_records;  ///< referred to by observables
-  std::vector<base::Diagnostic> notes;                     ///< small gaps that were closed, and the like
+  const multibody::TreeManifold* manifold = nullptr;              ///< of the model
+  std::unique_ptr<multibody::JointRecords> joint_records;         ///< referred to by observables
+  std::vector<const fem::Solid*> solids;                          ///< of the model, in the order of the scene
+  std::vector<std::unique_ptr<fem::SolidRecords>> solid_records;  ///< of these, referred to by observables
+  std::vector<base::Diagnostic> notes;                            ///< small gaps that were closed, and the like
   std::size_t n_named_controls = 0;  ///< the scene's controls come first; then functions of drives
   std::string linear = "auto";       ///< linear solver that the scene asks for; it can solve this system
   Assembled assembled;

@@ -5,6 +5,7 @@
 /// v = (q_1 - q_0)/dt and the control u at the middle of the interval (numerics, 1.5). A term adds its share of L and
 /// of the non-conservative force f. Statics use the same terms with v = 0.
 #include <Eigen/Core>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -24,6 +25,8 @@ struct IntervalPoint {
   double dt = 0.0;                  ///< 0 in statics
   std::span<const double> x0 = {};  ///< coordinates of the manifold at the begin and the end: whole turns of angles
   std::span<const double> x1 = {};
+  const Eigen::VectorXd* y = nullptr;  ///< stage unknowns of the substructures (n_y); null: none are there or wanted
+  bool first = false;                  ///< the first interval of a run, whose begin has half the weight of a node
 };
 
 /// A node in time, for energies.
@@ -34,10 +37,17 @@ struct NodePoint {
   std::span<const double> u;
 };
 
-/// First derivatives in q-space, accumulated over the terms.
+/// First derivatives, accumulated over the terms. `begin` and `end` are of length 0 where no term acts at the ends or
+/// the point is at rest, `stage` in models without substructures, `on_rates` where the point gives no coordinates.
 struct IntervalForces {
-  Eigen::VectorXd force;     ///< dL/dq + f (n_q)
-  Eigen::VectorXd momentum;  ///< dL/dv (n_q)
+  Eigen::VectorXd force;          ///< dL/dq + f (n_q)
+  Eigen::VectorXd momentum;       ///< dL/dv (n_q)
+  Eigen::VectorXd begin = {};     ///< D1 L_d beyond dt/2 dL/dq - dL/dv: what depends on q0 itself (n_q)
+  Eigen::VectorXd end = {};       ///< D2 L_d likewise: what depends on q1 itself (n_q)
+  Eigen::VectorXd stage = {};     ///< residual of the stage rows (n_y)
+  Eigen::VectorXd on_rates = {};  ///< force on the minimal rates beside T^T (dL/dq + f), dt/2 at either end (n_v)
+  double margin = std::numeric_limits<double>::infinity();  ///< not positive, or NaN: the state is inadmissible
+  double violation = 0.0;  ///< largest violation of constraints that terms keep themselves, dimensionless
 };
 
 /// Factors of the second derivatives that a term adds to the tangent:
@@ -110,12 +120,30 @@ class IntervalTerm {
   /// Finds the slots of those blocks, once.
   virtual void bind(const math::BlockPattern& pattern) = 0;
 
+  /// True if the term writes IntervalForces::begin and end over intervals dt > 0.
+  virtual bool acts_at_ends() const { return false; }
+
   /// Adds dL/dq + f and dL/dv at the point.
   virtual void add_forces(const IntervalPoint& at, IntervalForces& out) const = 0;
   /// Adds the weighted second derivatives at the point.
   virtual void add_tangent(const IntervalPoint& at, const TangentWeights& weights, math::BlockMatrix& K) const = 0;
   /// Adds d(dL/dq + f)/du_c for control c (n_q); used by continuation and optimal control.
   virtual void add_control_force(const IntervalPoint& at, int control, Eigen::VectorXd& out) const = 0;
+
+  /// Adds the weighted derivatives of IntervalForces::on_rates by the coordinates x (qq) and their rates (qv); force j
+  /// depends on coordinate j alone, so that they are the diagonal of a matrix (n_v).
+  virtual void add_rate_tangent(const IntervalPoint& at, const TangentWeights& weights,
+                                Eigen::VectorXd& diagonal) const {
+    static_cast<void>(at);
+    static_cast<void>(weights);
+    static_cast<void>(diagonal);
+  }
+  /// Adds d(on_rates)/du_c for control c (n_v).
+  virtual void add_control_force_on_rates(const IntervalPoint& at, int control, Eigen::VectorXd& out) const {
+    static_cast<void>(at);
+    static_cast<void>(control);
+    static_cast<void>(out);
+  }
 
   /// Work of the non-conservative forces over the interval.
   virtual IntervalWork work(const IntervalPoint& at) const = 0;

@@ -25,14 +25,19 @@ class Frame {
 };
 
 /// Factorised projected system of one Newton iteration,
-///     [ T_l^T K T_r   B_l^T ] [ w  ]   [ r ]
-///     [ B_r           0     ] [ mu ] = [ g ],   B = Z^T G T with the loop basis Z of the left frame.
+///     [ T_l^T K T_r + D   B_l^T ] [ w  ]   [ r ]
+///     [ B_r               0     ] [ mu ] = [ g ],   B = Z^T G T with the loop basis Z of the left frame,
+/// D = diag(diagonal).
 class ProjectedSolver {
  public:
   virtual ~ProjectedSolver() = default;
   /// False if the system is singular to working precision. Allocates nothing after the first call. The loop rows of
-  /// `left` must have been chosen.
-  virtual bool factorise(const Frame& left, const Frame& right, const math::BlockMatrix& K) = 0;
+  /// `left` must have been chosen. `diagonal`: (n_v), or empty for none.
+  virtual bool factorise(const Frame& left, const Frame& right, const math::BlockMatrix& K,
+                         const Eigen::VectorXd& diagonal) = 0;
+  bool factorise(const Frame& left, const Frame& right, const math::BlockMatrix& K) {
+    return factorise(left, right, K, Eigen::VectorXd());
+  }
   /// r (n_v), g (n_c) in; w (n_v), mu (n_c) out.
   virtual void solve(const Eigen::VectorXd& r, const Eigen::VectorXd& g, Eigen::VectorXd& w, Eigen::VectorXd& mu) = 0;
   virtual std::string name() const = 0;
@@ -76,6 +81,10 @@ class Manifold {
   virtual void project(const Frame& frame, const Eigen::VectorXd& f, Eigen::VectorXd& r) const = 0;
   /// dq = T w.
   virtual void lift(const Frame& frame, const Eigen::VectorXd& w, Eigen::VectorXd& dq) const = 0;
+  /// f += factor times the forces of joint drives: T^T f = `on_rates` (n_v), in equal and opposite pairs on the bodies
+  /// of each joint, so that reactions do not contain them; f (n_q).
+  virtual void add_forces_on_rates(const Frame& frame, double factor, const Eigen::VectorXd& on_rates,
+                                   Eigen::VectorXd& f) const = 0;
 
   /// g (n_loop_rows): violation of the loop-closing rows; gaps are divided by the size of the scene.
   virtual void constraints(const Eigen::VectorXd& q, Eigen::VectorXd& g) const = 0;

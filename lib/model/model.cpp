@@ -7,23 +7,40 @@ namespace muldi::model {
 
 void Model::bind() {
   PatternRequest request;
-  for (const auto& term : terms) term->request(request);
+  each([&](const IntervalTerm& term) { term.request(request); });
   pattern = std::make_unique<math::BlockPattern>(node_sizes, request.pairs());
-  part_counts_.clear();
-  for (const auto& term : terms) {
-    term->bind(*pattern);
-    part_counts_.push_back(term->parts().size());
+  n_q_ = pattern->n_rows();
+  n_y_ = 0;
+  for (const auto& part : substructures) {
+    part->place_slices(n_q_, n_y_);
+    n_q_ = part->q_slice().end();
+    n_y_ = part->y_slice().end();
   }
+  part_counts_.clear();
+  for (const auto& term : terms) term->bind(*pattern);
+  for (const auto& part : substructures) part->bind(*pattern);
+  each([&](const IntervalTerm& term) { part_counts_.push_back(term.parts().size()); });
 }
 
 void Model::evaluate_controls(double t, std::vector<double>& u) const {
   for (std::size_t k = 0; k < controls.size(); ++k) u[k] = controls[k].function.at(t);
 }
 
+bool Model::acts_at_ends() const {
+  return !substructures.empty() ||
+         std::any_of(terms.begin(), terms.end(), [](const auto& term) { return term->acts_at_ends(); });
+}
+
 void Model::forces(const IntervalPoint& at, IntervalForces& out) const {
   out.force.setZero();
   out.momentum.setZero();
-  for (const auto& term : terms) term->add_forces(at, out);
+  out.begin.setZero();
+  out.end.setZero();
+  out.stage.setZero();
+  out.on_rates.setZero();
+  out.margin = std::numeric_limits<double>::infinity();
+  out.violation = 0.0;
+  each([&](const IntervalTerm& term) { term.add_forces(at, out); });
 }
 
 void Model::tangent(const IntervalPoint& at, const TangentWeights& weights, math::BlockMatrix& K) const {
@@ -31,9 +48,14 @@ void Model::tangent(const IntervalPoint& at, const TangentWeights& weights, math
   for (const auto& term : terms) term->add_tangent(at, weights, K);
 }
 
+void Model::rate_tangent(const IntervalPoint& at, const TangentWeights& weights, Eigen::VectorXd& diagonal) const {
+  diagonal.setZero();
+  for (const auto& term : terms) term->add_rate_tangent(at, weights, diagonal);
+}
+
 IntervalWork Model::work(const IntervalPoint& at) const {
   IntervalWork total;
-  for (const auto& term : terms) total += term->work(at);
+  each([&](const IntervalTerm& term) { total += term.work(at); });
   return total;
 }
 
@@ -45,42 +67,55 @@ std::string Model::inadmissible(const Eigen::VectorXd& q) const {
   return {};
 }
 
-std::string Model::advice(const NodePoint& at) const {
-  for (const auto& term : terms) {
-    std::string sentence = term->advice(at);
-    if (!sentence.empty()) return sentence;
+std::string Model::inadmissible_anywhere(const Eigen::VectorXd& q) const {
+  std::string reason = inadmissible(q);
+  for (const auto& part : substructures) {
+    if (reason.empty()) reason = part->inadmissible(q);
   }
-  return {};
+  return reason;
+}
+
+std::string Model::advice(const NodePoint& at) const {
+  std::string sentence;
+  each([&](const IntervalTerm& term) {
+    if (sentence.empty()) sentence = term.advice(at);
+  });
+  return sentence;
 }
 
 std::vector<std::string> Model::parts() const {
   std::vector<std::string> all;
-  for (const auto& term : terms) {
-    for (std::string& part : term->parts()) all.push_back(std::move(part));
-  }
+  each([&](const IntervalTerm& term) {
+    for (std::string& part : term.parts()) all.push_back(std::move(part));
+  });
   return all;
 }
 
 void Model::energies(const NodePoint& at, std::span<Energy> out) const {
   std::fill(out.begin(), out.end(), Energy{});
   std::size_t first = 0;
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    terms[i]->energies(at, out.subspan(first, part_counts_[i]));
-    first += part_counts_[i];
-  }
+  std::size_t i = 0;
+  each([&](const IntervalTerm& term) {
+    term.energies(at, out.subspan(first, part_counts_[i]));
+    first += part_counts_[i++];
+  });
 }
 
 void Model::momentum_maps(const Eigen::VectorXd& q, const Eigen::VectorXd& p, Eigen::Vector3d& linear,
                           Eigen::Vector3d& angular) const {
   linear.setZero();
   angular.setZero();
+  const auto add = [&](Eigen::Index at, bool is_position) {
+    const Eigen::Vector3d part = p.segment<3>(at);
+    if (is_position) linear += part;
+    angular += Eigen::Vector3d(q.segment<3>(at)).cross(part);
+  };
   for (int node = 0; node < pattern->n_nodes(); ++node) {
     const int first = pattern->offset(node);
-    for (int k = 0; k + 3 <= pattern->size(node); k += 3) {
-      const Eigen::Vector3d part = p.segment<3>(first + k);
-      if (k == 0) linear += part;
-      angular += Eigen::Vector3d(q.segment<3>(first + k)).cross(part);
-    }
+    for (int k = 0; k + 3 <= pattern->size(node); k += 3) add(first + k, k == 0);
+  }
+  for (const auto& part : substructures) {
+    for (Eigen::Index at = part->q_slice().first; at < part->q_slice().end(); at += 3) add(at, true);
   }
 }
 

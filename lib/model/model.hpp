@@ -9,6 +9,7 @@
 #include "model/interval_term.hpp"
 #include "model/manifold.hpp"
 #include "model/observable.hpp"
+#include "model/substructure.hpp"
 
 namespace muldi::model {
 
@@ -23,24 +24,37 @@ struct Model {
   std::vector<int> node_sizes;                  ///< unknowns a node (slice) of q
   std::unique_ptr<math::BlockPattern> pattern;  ///< blocks that the terms write
   std::vector<std::unique_ptr<IntervalTerm>> terms;
+  std::vector<std::unique_ptr<Substructure>> substructures;  ///< their slices of q follow those of the manifold
   std::unique_ptr<Manifold> manifold;
   std::vector<Control> controls;
   std::vector<Observable> observables;
+  std::vector<FieldHistory> histories;
 
-  /// Requests the pattern of all terms and binds them; call once, after the last term.
+  /// Requests the pattern of all terms and binds them, places the slices of the substructures; call once, after the
+  /// last of them.
   void bind();
+
+  Eigen::Index n_q() const { return n_q_; }  ///< configuration: the manifold's and the substructures' slices
+  Eigen::Index n_y() const { return n_y_; }  ///< stage unknowns
 
   /// Controls at time t (n_controls).
   void evaluate_controls(double t, std::vector<double>& u) const;
 
+  /// True if IntervalForces::begin and end are needed over intervals dt > 0.
+  bool acts_at_ends() const;
   void forces(const IntervalPoint& at, IntervalForces& out) const;
   void tangent(const IntervalPoint& at, const TangentWeights& weights, math::BlockMatrix& K) const;
+  /// Derivatives of the forces on the minimal rates, see IntervalTerm::add_rate_tangent; overwrites `diagonal` (n_v).
+  void rate_tangent(const IntervalPoint& at, const TangentWeights& weights, Eigen::VectorXd& diagonal) const;
   IntervalWork work(const IntervalPoint& at) const;
+  /// Why the terms cannot be evaluated at q, or empty; substructures report by the margin of their forces.
   std::string inadmissible(const Eigen::VectorXd& q) const;
+  /// The same with the substructures, which costs as much as their forces.
+  std::string inadmissible_anywhere(const Eigen::VectorXd& q) const;
   /// The first advice of a term, or empty.
   std::string advice(const NodePoint& at) const;
 
-  /// Components whose energies are recorded, over all terms in order.
+  /// Components whose energies are recorded, over all terms and substructures in order.
   std::vector<std::string> parts() const;
   /// Energies at a node, one entry for each of parts(); overwrites `out`.
   void energies(const NodePoint& at, std::span<Energy> out) const;
@@ -50,7 +64,16 @@ struct Model {
                      Eigen::Vector3d& angular) const;
 
  private:
+  /// Calls use(term) for all terms, then for all substructures.
+  template <class Use>
+  void each(const Use& use) const {
+    for (const auto& term : terms) use(*term);
+    for (const auto& part : substructures) use(*part);
+  }
+
   std::vector<std::size_t> part_counts_;
+  Eigen::Index n_q_ = 0;
+  Eigen::Index n_y_ = 0;
 };
 
 }  // namespace muldi::model

@@ -1,6 +1,7 @@
 #pragma once
 /// Quantities that a run records at the nodes in time: joint angles, muscle lengths, points, energies.
 #include <Eigen/Core>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
@@ -20,7 +21,10 @@ struct NodeView {
   const Eigen::VectorXd& v;                 ///< T rate (n_q)
   const Eigen::VectorXd& constraint_force;  ///< -G^T lambda on the right of the equation of motion (n_q)
   const Eigen::VectorXd& multipliers;       ///< lambda of the loop rows (n_loop_rows), of least norm
+  const Eigen::VectorXd& y;                 ///< stage unknowns of the interval that ends here (n_y)
   std::span<const double> u;                ///< controls of the interval that ends here (at t_0: of the first)
+  /// Stage unknowns of the interval that begins here (n_y), of which the multipliers belong to this node; null: y.
+  const Eigen::VectorXd* y_after = nullptr;
 };
 
 /// One recorded series: a fixed number of doubles a row.
@@ -39,6 +43,20 @@ struct Observable {
     for (const std::size_t extent : shape) n *= extent;
     return n;
   }
+};
+
+/// Fields over a mesh, recorded in a series of their own.
+struct FieldHistory {
+  struct Field {
+    Observable observable;  ///< its path is below `folder`
+    bool at_nodes = false;  ///< else one value a cell
+  };
+
+  std::string folder;                    ///< e.g. "solids/cube"
+  int every = 1;                         ///< records of the run between records of the fields
+  std::vector<double> reference = {};    ///< positions of the nodes (3 n_nodes)
+  std::vector<std::int64_t> cells = {};  ///< nodes of the hexahedra (8 n_cells), in VTK's order
+  std::vector<Field> fields = {};
 };
 
 }  // namespace muldi::model

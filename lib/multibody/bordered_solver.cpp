@@ -50,10 +50,11 @@ class BorderedSolver final : public model::ProjectedSolver {
     permuted_ = y_;
   }
 
-  bool factorise(const model::Frame& left, const model::Frame& right, const math::BlockMatrix& K) override {
+  bool factorise(const model::Frame& left, const model::Frame& right, const math::BlockMatrix& K,
+                 const Eigen::VectorXd& diagonal) override {
     const auto& l_frame = static_cast<const TreeFrame&>(left);
     const auto& r_frame = static_cast<const TreeFrame&>(right);
-    if (!inner_->factorise(left, right, K)) return false;
+    if (!inner_->factorise(left, right, K, diagonal)) return false;
     if (C_.cols() == 0) return true;
     C_.leftCols(n_c_) = l_frame.loop_rows.transpose();
     manifold_.project_constraints(right, l_frame.loop_basis, B_);

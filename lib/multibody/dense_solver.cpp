@@ -29,7 +29,8 @@ class DenseSolver final : public model::ProjectedSolver {
         scale_(Eigen::VectorXd::Ones(n_)),
         weights_(2, manifold.tree().n_bodies + manifold.n_plain()) {}
 
-  bool factorise(const model::Frame& left, const model::Frame& right, const math::BlockMatrix& K) override {
+  bool factorise(const model::Frame& left, const model::Frame& right, const math::BlockMatrix& K,
+                 const Eigen::VectorXd& diagonal) override {
     const int n_v = manifold_.n_v();
     weigh(K);
     for (int k = 0; k < n_v; ++k) {
@@ -39,7 +40,11 @@ class DenseSolver final : public model::ProjectedSolver {
       K.multiply(dq_, df_);
       manifold_.project(left, df_, column_);
       A_.col(k).head(n_v) = column_;
-      const double size = size_of(dq_);
+      double size = size_of(dq_);
+      if (diagonal.size() > 0) {
+        A_(k, k) += diagonal[k];
+        size += std::abs(diagonal[k]);
+      }
       scale_[k] = size > 0.0 ? 1.0 / std::sqrt(size) : 1.0;
     }
     if (manifold_.n_c() > 0) {

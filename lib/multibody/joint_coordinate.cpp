@@ -1,14 +1,12 @@
 #include "multibody/joint_coordinate.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include "base/error.hpp"
 
 namespace muldi::multibody {
 
-JointCoordinate::JointCoordinate(const Joint& joint, const Motion& motion, int x_index)
-    : is_angle_(motion.is_angle()), x_index_(x_index) {
+JointCoordinate::JointCoordinate(const Joint& joint, const Motion& motion) : is_angle_(motion.is_angle()) {
   MULDI_EXPECT(motion.kind != Motion::Kind::ball, "a ball has no scalar coordinates");
   for (const int body : {joint.body_a, joint.body_b}) {
     if (body != ground) nodes_[static_cast<std::size_t>(n_nodes_++)] = body;
@@ -36,14 +34,10 @@ JointCoordinate::SineCosine JointCoordinate::sine_cosine(const Eigen::VectorXd& 
   return result;
 }
 
-double JointCoordinate::value(const Eigen::VectorXd& q, std::span<const double> x0, std::span<const double> x1) const {
+double JointCoordinate::value(const Eigen::VectorXd& q) const {
   if (!is_angle_) return slide_.value(q);
   const auto [sine, cosine] = sine_cosine(q);
-  const double angle = std::atan2(sine, cosine);
-  if (x_index_ < 0 || x0.empty()) return angle;
-  const auto at = static_cast<std::size_t>(x_index_);
-  constexpr double turn = 2.0 * std::numbers::pi;
-  return angle + turn * std::round((0.5 * (x0[at] + x1[at]) - angle) / turn);
+  return std::atan2(sine, cosine);
 }
 
 void JointCoordinate::local_gradient(const model::Bilinear& form, const Eigen::VectorXd& q, double factor,
@@ -74,33 +68,55 @@ void JointCoordinate::local_hessian(const model::Bilinear& form, double factor, 
   }
 }
 
-void JointCoordinate::derivatives(const Eigen::VectorXd& q, LocalVector& gradient, LocalMatrix& hessian) const {
-  gradient.setZero();
-  hessian.setZero();
-  if (!is_angle_) {
-    local_gradient(slide_, q, 1.0, gradient);
-    local_hessian(slide_, 1.0, hessian);
-    return;
-  }
-  // theta = atan2(S, C): grad = (C S' - S C')/r2, r2 = S^2 + C^2,
-  // Hessian = (C S'' - S C'')/r2 - 2 sym(grad (x) (S S' + C C'))/r2.
-  const auto [S, C] = sine_cosine(q);
-  const double r2 = S * S + C * C;
-  LocalVector grad_S = LocalVector::Zero();
-  LocalVector grad_C = LocalVector::Zero();
+void JointCoordinate::sine_cosine_gradients(const Eigen::VectorXd& q, LocalVector& of_sine,
+                                            LocalVector& of_cosine) const {
+  of_sine.setZero();
+  of_cosine.setZero();
   for (const Product& product : sine_) {
-    if (product.sign == 0.0) continue;
-    local_gradient(product.form, q, product.sign, grad_S);
-    local_hessian(product.form, product.sign * C / r2, hessian);
+    if (product.sign != 0.0) local_gradient(product.form, q, product.sign, of_sine);
   }
   for (const Product& product : cosine_) {
-    if (product.sign == 0.0) continue;
-    local_gradient(product.form, q, product.sign, grad_C);
-    local_hessian(product.form, -product.sign * S / r2, hessian);
+    if (product.sign != 0.0) local_gradient(product.form, q, product.sign, of_cosine);
   }
-  gradient = (C * grad_S - S * grad_C) / r2;
+}
+
+JointCoordinate::LocalVector JointCoordinate::gradient(const Eigen::VectorXd& q) const {
+  LocalVector result = LocalVector::Zero();
+  if (!is_angle_) {
+    local_gradient(slide_, q, 1.0, result);
+    return result;
+  }
+  // theta = atan2(S, C): grad = (C S' - S C')/(S^2 + C^2).
+  const auto [S, C] = sine_cosine(q);
+  LocalVector grad_S;
+  LocalVector grad_C;
+  sine_cosine_gradients(q, grad_S, grad_C);
+  result = (C * grad_S - S * grad_C) / (S * S + C * C);
+  return result;
+}
+
+JointCoordinate::LocalMatrix JointCoordinate::hessian(const Eigen::VectorXd& q) const {
+  LocalMatrix result = LocalMatrix::Zero();
+  if (!is_angle_) {
+    local_hessian(slide_, 1.0, result);
+    return result;
+  }
+  // (C S'' - S C'')/r2 - 2 sym(grad (x) (S S' + C C'))/r2, r2 = S^2 + C^2.
+  const auto [S, C] = sine_cosine(q);
+  const double r2 = S * S + C * C;
+  for (const Product& product : sine_) {
+    if (product.sign != 0.0) local_hessian(product.form, product.sign * C / r2, result);
+  }
+  for (const Product& product : cosine_) {
+    if (product.sign != 0.0) local_hessian(product.form, -product.sign * S / r2, result);
+  }
+  LocalVector grad_S;
+  LocalVector grad_C;
+  sine_cosine_gradients(q, grad_S, grad_C);
+  const LocalVector slope = (C * grad_S - S * grad_C) / r2;
   const LocalVector radial = (S * grad_S + C * grad_C) / r2;
-  hessian.noalias() -= gradient * radial.transpose() + radial * gradient.transpose();
+  result.noalias() -= slope * radial.transpose() + radial * slope.transpose();
+  return result;
 }
 
 double JointCoordinate::rate(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const {

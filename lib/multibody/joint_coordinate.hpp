@@ -1,6 +1,6 @@
 #pragma once
-/// A scalar joint coordinate as a function of q, with gradient and Hessian: springs, dampers, drives and stops act on
-/// it.
+/// A scalar joint coordinate as a function of q, with gradient and Hessian: springs, dampers, drives and stops of
+/// loop-closing joints act on it.
 #include <array>
 #include <span>
 
@@ -12,12 +12,12 @@ namespace muldi::multibody {
 /// A slide z = e_axis^A . p - z_0, or an angle theta = atan2(S, C) with S, C sums of products e_a^A . e_b^B.
 class JointCoordinate {
  public:
-  /// `motion` must not be a ball. `x_index`: the coordinate's place in x, or -1 (angles then stay in (-pi, pi]).
-  JointCoordinate(const Joint& joint, const Motion& motion, int x_index);
+  /// `motion` must not be a ball.
+  JointCoordinate(const Joint& joint, const Motion& motion);
 
   bool is_angle() const { return is_angle_; }
-  /// The value nearest to the stored coordinates x (mean of x0 and x1), which count whole turns.
-  double value(const Eigen::VectorXd& q, std::span<const double> x0, std::span<const double> x1) const;
+  /// Angles are in (-pi, pi].
+  double value(const Eigen::VectorXd& q) const;
   double rate(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const;
   /// f += factor grad.
   void add_gradient(const Eigen::VectorXd& q, double factor, Eigen::VectorXd& f) const;
@@ -28,7 +28,8 @@ class JointCoordinate {
   using LocalVector = Eigen::Matrix<double, max_size, 1>;
   using LocalMatrix = Eigen::Matrix<double, max_size, max_size>;
   /// Gradient and Hessian in local unknowns (node by node).
-  void derivatives(const Eigen::VectorXd& q, LocalVector& gradient, LocalMatrix& hessian) const;
+  LocalVector gradient(const Eigen::VectorXd& q) const;
+  LocalMatrix hessian(const Eigen::VectorXd& q) const;
 
  private:
   struct Product {
@@ -40,12 +41,13 @@ class JointCoordinate {
     double cosine;
   };
   SineCosine sine_cosine(const Eigen::VectorXd& q) const;
+  /// Local gradients of S and C.
+  void sine_cosine_gradients(const Eigen::VectorXd& q, LocalVector& of_sine, LocalVector& of_cosine) const;
   void local_gradient(const model::Bilinear& form, const Eigen::VectorXd& q, double factor, LocalVector& out) const;
   void local_hessian(const model::Bilinear& form, double factor, LocalMatrix& out) const;
   int local(int node, int dof) const { return dof - 12 * node + (nodes_[0] == node ? 0 : 12); }
 
   bool is_angle_ = false;
-  int x_index_ = -1;
   model::Bilinear slide_;
   std::array<Product, 2> sine_{};
   std::array<Product, 2> cosine_{};

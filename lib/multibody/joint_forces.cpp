@@ -3,6 +3,22 @@
 #include <algorithm>
 
 namespace muldi::multibody {
+namespace {
+
+/// The coordinate in the middle of the interval and its mean rate, 0 at rest.
+struct MiddleOf {
+  double position;
+  double rate;
+
+  MiddleOf(const model::IntervalPoint& at, int coordinate) {
+    const double begin = at.x0[static_cast<std::size_t>(coordinate)];
+    const double end = at.x1[static_cast<std::size_t>(coordinate)];
+    position = 0.5 * (begin + end);
+    rate = at.dt > 0.0 ? (end - begin) / at.dt : 0.0;
+  }
+};
+
+}  // namespace
 
 JointForce::Response JointForce::respond(double position, double rate, std::span<const double> u) const {
   Response r{.force = 0.0,
@@ -31,88 +47,55 @@ double JointForce::potential(double position) const {
   return 0.5 * stiffness * stretch * stretch + 0.5 * stops.stiffness * (outside == 0.0 ? 0.0 : outside * outside);
 }
 
-JointForces::JointForces(std::vector<JointForce> forces) : forces_(std::move(forces)) {
-  for (const JointForce& force : forces_) {
-    const auto known = std::find(parts_.begin(), parts_.end(), force.part);
-    part_of_.push_back(static_cast<std::size_t>(known - parts_.begin()));
-    if (known == parts_.end()) parts_.push_back(force.part);
-  }
+void ForceParts::add(const JointForce& force) {
+  const auto known = std::find(names.begin(), names.end(), force.part);
+  of.push_back(static_cast<std::size_t>(known - names.begin()));
+  if (known == names.end()) names.push_back(force.part);
 }
 
-void JointForces::request(model::PatternRequest& pattern) const {
-  for (const JointForce& force : forces_) pattern.add_clique(force.coordinate.nodes());
-}
-
-void JointForces::bind(const math::BlockPattern& pattern) {
-  slots_.assign(forces_.size(), {});
-  for (std::size_t f = 0; f < forces_.size(); ++f) {
-    const auto nodes = forces_[f].coordinate.nodes();
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-      for (std::size_t j = 0; j < nodes.size(); ++j) slots_[f][2 * i + j] = pattern.slot(nodes[i], nodes[j]);
-  }
+JointForces::JointForces(std::vector<TreeJointForce> forces) : forces_(std::move(forces)) {
+  for (const TreeJointForce& force : forces_) parts_.add(force.law);
 }
 
 void JointForces::add_forces(const model::IntervalPoint& at, model::IntervalForces& out) const {
-  for (const JointForce& force : forces_) {
-    const double position = force.coordinate.value(at.q, at.x0, at.x1);
-    const double rate = force.coordinate.rate(at.q, at.v);
-    force.coordinate.add_gradient(at.q, force.respond(position, rate, at.u).force, out.force);
+  if (at.x0.empty()) return;
+  for (const TreeJointForce& force : forces_) {
+    const MiddleOf middle(at, force.coordinate);
+    out.on_rates[force.rate] += force.law.respond(middle.position, middle.rate, at.u).force;
   }
 }
 
-void JointForces::add_tangent(const model::IntervalPoint& at, const model::TangentWeights& weights,
-                              math::BlockMatrix& K) const {
+void JointForces::add_rate_tangent(const model::IntervalPoint& at, const model::TangentWeights& weights,
+                                   Eigen::VectorXd& diagonal) const {
   if (weights.qq == 0.0 && weights.qv == 0.0) return;
-  JointCoordinate::LocalVector gradient;
-  JointCoordinate::LocalMatrix hessian;
-  JointCoordinate::LocalVector v = JointCoordinate::LocalVector::Zero();
-  for (std::size_t f = 0; f < forces_.size(); ++f) {
-    const JointForce& force = forces_[f];
-    const auto nodes = force.coordinate.nodes();
-    force.coordinate.derivatives(at.q, gradient, hessian);
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      v.segment<12>(static_cast<Eigen::Index>(12 * i)) = at.v.segment<12>(12 * nodes[i]);
-    }
-    const double rate = gradient.dot(v);
-    const JointForce::Response r = force.respond(force.coordinate.value(at.q, at.x0, at.x1), rate, at.u);
-    // f = Q grad: f_q = Q_theta grad grad^T + Q_rate grad (H v)^T + Q H,  f_v = Q_rate grad grad^T.
-    const JointCoordinate::LocalVector right =
-        (weights.qq * r.by_position + weights.qv * r.by_rate) * gradient + weights.qq * r.by_rate * (hessian * v);
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      for (std::size_t j = 0; j < nodes.size(); ++j) {
-        const auto row = static_cast<Eigen::Index>(12 * i);
-        const auto column = static_cast<Eigen::Index>(12 * j);
-        const math::BlockSlot& slot = slots_[f][2 * i + j];
-        Eigen::Map<Eigen::Matrix<double, 12, 12, Eigen::RowMajor>, 0, Eigen::OuterStride<>> block(
-            K.data(slot), Eigen::OuterStride<>(slot.stride));
-        block += weights.qq * r.force * hessian.block<12, 12>(row, column);
-        block.noalias() += gradient.segment<12>(row) * right.segment<12>(column).transpose();
-      }
-    }
+  for (const TreeJointForce& force : forces_) {
+    const MiddleOf middle(at, force.coordinate);
+    const JointForce::Response r = force.law.respond(middle.position, middle.rate, at.u);
+    diagonal[force.rate] += weights.qq * r.by_position + weights.qv * r.by_rate;
   }
 }
 
-void JointForces::add_control_force(const model::IntervalPoint& at, int control, Eigen::VectorXd& out) const {
-  for (const JointForce& force : forces_) {
-    if (force.control == control) force.coordinate.add_gradient(at.q, force.control_factor, out);
+void JointForces::add_control_force_on_rates(const model::IntervalPoint&, int control, Eigen::VectorXd& out) const {
+  for (const TreeJointForce& force : forces_) {
+    if (force.law.control == control) out[force.rate] += force.law.control_factor;
   }
 }
 
 model::IntervalWork JointForces::work(const model::IntervalPoint& at) const {
   model::IntervalWork work;
-  for (const JointForce& force : forces_) {
-    const double rate = force.coordinate.rate(at.q, at.v);
-    const JointForce::Response r = force.respond(force.coordinate.value(at.q, at.x0, at.x1), rate, at.u);
-    work.dissipated -= at.dt * r.damping_force * rate;
-    work.external += at.dt * r.drive * rate;
+  for (const TreeJointForce& force : forces_) {
+    const MiddleOf middle(at, force.coordinate);
+    const JointForce::Response r = force.law.respond(middle.position, middle.rate, at.u);
+    work.dissipated -= at.dt * r.damping_force * middle.rate;
+    work.external += at.dt * r.drive * middle.rate;
   }
   return work;
 }
 
 void JointForces::energies(const model::NodePoint& at, std::span<model::Energy> out) const {
   for (std::size_t f = 0; f < forces_.size(); ++f) {
-    const double position = forces_[f].coordinate.value(at.q, at.x, at.x);
-    out[part_of_[f]].elastic += forces_[f].potential(position);
+    const double position = at.x[static_cast<std::size_t>(forces_[f].coordinate)];
+    out[parts_.of[f]].elastic += forces_[f].law.potential(position);
   }
 }
 

@@ -1,11 +1,15 @@
 #pragma once
 /// Springs, dampers, drives and stops on scalar joint coordinates.
+///
+/// Joints of the tree have their coordinates theta among those of the manifold, and the potential is discretised there:
+///     L_d = -dt V(theta_mid),  theta_mid = (theta_n + theta_{n+1})/2,  theta' = (theta_{n+1} - theta_n)/dt.
+/// Either end of the interval gets dt/2 Q grad theta, which T^T takes to dt/2 Q on the joint's rate: the tangent is a
+/// diagonal. As theta does not see rigid motions, the momentum maps are kept.
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "model/interval_term.hpp"
-#include "multibody/joint_coordinate.hpp"
 
 namespace muldi::multibody {
 
@@ -21,7 +25,6 @@ struct Stops {
 /// Q = -stiffness (theta - rest) - damping theta' - stops + drive, drive = control_factor u_control + constant.
 struct JointForce {
   std::string part;  ///< "joints/<name>"; forces of one joint share it
-  JointCoordinate coordinate;
   double stiffness = 0.0;
   double rest = 0.0;
   double damping = 0.0;
@@ -41,25 +44,40 @@ struct JointForce {
   double potential(double position) const;
 };
 
+/// Names of the components that forces belong to, each once.
+struct ForceParts {
+  std::vector<std::string> names;
+  std::vector<std::size_t> of;  ///< for every force
+
+  void add(const JointForce& force);
+};
+
+/// A force on a joint of the tree: the coordinate's place in x, and in the minimal rates.
+struct TreeJointForce {
+  JointForce law;
+  int coordinate = 0;
+  int rate = 0;
+};
+
 class JointForces final : public model::IntervalTerm {
  public:
-  explicit JointForces(std::vector<JointForce> forces);
+  explicit JointForces(std::vector<TreeJointForce> forces);
 
-  void request(model::PatternRequest& pattern) const override;
-  void bind(const math::BlockPattern& pattern) override;
+  void request(model::PatternRequest&) const override {}
+  void bind(const math::BlockPattern&) override {}
   void add_forces(const model::IntervalPoint& at, model::IntervalForces& out) const override;
-  void add_tangent(const model::IntervalPoint& at, const model::TangentWeights& weights,
-                   math::BlockMatrix& K) const override;
-  void add_control_force(const model::IntervalPoint& at, int control, Eigen::VectorXd& out) const override;
+  void add_tangent(const model::IntervalPoint&, const model::TangentWeights&, math::BlockMatrix&) const override {}
+  void add_control_force(const model::IntervalPoint&, int, Eigen::VectorXd&) const override {}
+  void add_rate_tangent(const model::IntervalPoint& at, const model::TangentWeights& weights,
+                        Eigen::VectorXd& diagonal) const override;
+  void add_control_force_on_rates(const model::IntervalPoint& at, int control, Eigen::VectorXd& out) const override;
   model::IntervalWork work(const model::IntervalPoint& at) const override;
-  std::vector<std::string> parts() const override { return parts_; }
+  std::vector<std::string> parts() const override { return parts_.names; }
   void energies(const model::NodePoint& at, std::span<model::Energy> out) const override;
 
  private:
-  std::vector<JointForce> forces_;
-  std::vector<std::size_t> part_of_;
-  std::vector<std::string> parts_;
-  std::vector<std::array<math::BlockSlot, 4>> slots_;  // node pairs of each force, row-major
+  std::vector<TreeJointForce> forces_;
+  ForceParts parts_;
 };
 
 }  // namespace muldi::multibody

@@ -146,7 +146,7 @@ void JointRecords::cut_velocity(const Joint& joint, const model::NodeView& at, s
   std::size_t k = 0;
   for (const Motion& motion : joint.pattern.motions) {
     if (motion.kind != Motion::Kind::ball) {
-      out[k++] = JointCoordinate(joint, motion, -1).rate(at.q, at.v);
+      out[k++] = JointCoordinate(joint, motion).rate(at.q, at.v);
       continue;
     }
     const Vector3d of_a = joint.body_a == ground ? Vector3d::Zero() : angular_velocity(at.q, at.v, joint.body_a);

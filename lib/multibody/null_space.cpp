@@ -133,6 +133,43 @@ void joint_forces_of(const KinematicTree& tree, const TreeFrame& frame, const Tw
 
 namespace {
 
+/// f += the force F at the centre of mass and the moment M: T_int^T f is the wrench (F, M).
+void add_wrench(int body, const Eigen::Matrix3d& directors, const Vector3d& F, const Vector3d& M, Eigen::VectorXd& f) {
+  f.segment<3>(12 * body) += F;
+  for (int k = 0; k < 3; ++k) f.segment<3>(12 * body + 3 + 3 * k) += 0.5 * M.cross(directors.col(k));
+}
+
+}  // namespace
+
+void add_drive_forces(const KinematicTree& tree, const TreeFrame& frame, double factor, const Eigen::VectorXd& on_rates,
+                      Eigen::VectorXd& f) {
+  for (std::size_t l = 0; l < tree.links.size(); ++l) {
+    const TreeLink& link = tree.links[l];
+    const LinkFrame& at = frame.links[l];
+    const Joint& joint = tree.joint(link);
+    if (on_rates.segment(link.first_rate, joint.pattern.n_rates()).isZero(0.0)) continue;
+    Vector3d F = Vector3d::Zero();
+    Vector3d M = Vector3d::Zero();
+    int column = 0;
+    for (const Motion& motion : joint.pattern.motions) {
+      for (int i = 0; i < motion.n_rates(); ++i, ++column) {
+        const double Q = factor * on_rates[link.first_rate + column];
+        if (motion.kind == Motion::Kind::slide) {
+          F += Q * at.columns.col(column).head<3>();
+        } else {
+          M += Q * at.columns.col(column).tail<3>();
+        }
+      }
+    }
+    add_wrench(link.body, at.pose.orientation, F, M + at.lever.cross(F), f);
+    const LinkFrame* parent = parent_frame(tree, frame, link);
+    if (parent == nullptr) continue;
+    add_wrench(link.parent, parent->pose.orientation, -F, -M - (at.arm + at.lever).cross(F), f);
+  }
+}
+
+namespace {
+
 /// Rates of the plain wrenches T_int^T f, f frozen: the directors turn.
 void wrench_rates(const KinematicTree& tree, const TreeFrame& frame, const Twists& twists, const Eigen::VectorXd& f,
                   Twists& change) {

@@ -54,6 +54,12 @@ void accumulate_wrenches(const KinematicTree& tree, const TreeFrame& frame, Twis
 /// r = T_b^T W with accumulated wrenches.
 void joint_forces_of(const KinematicTree& tree, const TreeFrame& frame, const Twists& accumulated, Eigen::VectorXd& r);
 
+/// f += factor times the forces of joint drives `on_rates` (n_rates): of slides along their axes through the pivot, of
+/// rotations moments about their axes, on the body of each link and opposite ones on its parent. As every joint's axes
+/// of rotation are perpendicular to each other, T^T f = factor on_rates.
+void add_drive_forces(const KinematicTree& tree, const TreeFrame& frame, double factor, const Eigen::VectorXd& on_rates,
+                      Eigen::VectorXd& f);
+
 /// A force f (n_q) that is kept while the configuration moves, with the accumulated wrenches of it.
 struct FrozenForce {
   const Eigen::VectorXd& f;

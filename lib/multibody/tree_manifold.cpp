@@ -209,6 +209,12 @@ void TreeManifold::lift(const model::Frame& frame, const Eigen::VectorXd& w, Eig
   dq.tail(n_plain_) = w.tail(n_plain_);
 }
 
+void TreeManifold::add_forces_on_rates(const model::Frame& frame, double factor, const Eigen::VectorXd& on_rates,
+                                       Eigen::VectorXd& f) const {
+  add_drive_forces(tree_, tree_frame(frame), factor, on_rates, f);
+  f.segment(12 * tree_.n_bodies, n_plain_) += factor * on_rates.tail(n_plain_);
+}
+
 void TreeManifold::constraints(const Eigen::VectorXd& q, Eigen::VectorXd& g) const {
   for (std::size_t i = 0; i < rows_.size(); ++i) g[static_cast<Eigen::Index>(i)] = rows_[i].value(q);
 }

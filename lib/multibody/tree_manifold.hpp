@@ -30,6 +30,8 @@ class TreeManifold final : public model::Manifold {
   const Eigen::MatrixXd& loop_basis(const model::Frame& frame) const override;
   void project(const model::Frame& frame, const Eigen::VectorXd& f, Eigen::VectorXd& r) const override;
   void lift(const model::Frame& frame, const Eigen::VectorXd& w, Eigen::VectorXd& dq) const override;
+  void add_forces_on_rates(const model::Frame& frame, double factor, const Eigen::VectorXd& on_rates,
+                           Eigen::VectorXd& f) const override;
   void constraints(const Eigen::VectorXd& q, Eigen::VectorXd& g) const override;
   void add_constraint_forces(const Eigen::VectorXd& q, double factor, const Eigen::VectorXd& lambda,
                              Eigen::VectorXd& f) const override;

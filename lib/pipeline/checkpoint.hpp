@@ -11,13 +11,16 @@ namespace muldi::pipeline {
 class CheckpointWriter {
  public:
   /// `n_row`: values of one recorded row (the next row may refer to them).
-  CheckpointWriter(const model::Manifold& manifold, std::size_t n_row);
+  CheckpointWriter(const model::Model& model, std::size_t n_row);
 
   const results::Checkpoint& first() const { return checkpoint_; }
   const results::Checkpoint& write(const variational::State& state, const variational::Ledger& ledger,
                                    const variational::StepReport& last, std::span<const double> row);
 
  private:
+  void write_memory();
+
+  const model::Model& model_;
   results::Checkpoint checkpoint_;
 };
 
@@ -28,7 +31,9 @@ inline bool in_dynamics(const results::Checkpoint& checkpoint) { return steps_of
 
 /// The state at a checkpoint; InputError if it belongs to another system.
 variational::State state_of(const results::Checkpoint& checkpoint, const scene::Scene& scene,
-                            const model::Manifold& manifold);
+                            const model::Model& model);
+/// Gives the substructures what their iterative evaluations start from.
+void restore_memory(const results::Checkpoint& checkpoint, const model::Model& model);
 void restore(const results::Checkpoint& checkpoint, variational::Ledger& ledger, variational::StepReport& last,
              std::span<double> row);
 

@@ -76,7 +76,7 @@ class InitialConditions {
   void add_cut_positions(std::vector<Condition>& conditions) const {
     for_each_cut_coordinate([&](const auto& entry, std::size_t k, const JointCoordinate& coordinate) {
       if (entry.value.position.empty()) return;
-      const double missing = entry.value.position[k] - coordinate.value(q_, {}, {});
+      const double missing = entry.value.position[k] - coordinate.value(q_);
       conditions.push_back({.row = gradient(coordinate), .value = missing, .origin = entry.origin});
     });
   }
@@ -119,7 +119,7 @@ class InitialConditions {
               "this joint closes a loop; initial values of a rotation vector are possible on the other "
               "joints of the loop only")});
         }
-        visit(entry, k++, JointCoordinate(built_.joint(index), motion, -1));
+        visit(entry, k++, JointCoordinate(built_.joint(index), motion));
       }
     }
   }
@@ -232,6 +232,21 @@ Eigen::VectorXd rates_of_momentum(const scene::Scene& scene, const build::BuiltM
   return rates;
 }
 
+/// Adds the rigid motions that the scene gives to solids; prescribed positions do not take part.
+void add_solid_velocities(const scene::Scene& scene, const build::BuiltModel& built, const Eigen::VectorXd& q,
+                          Eigen::VectorXd& v) {
+  for (const auto& entry : scene.initial.solids) {
+    const fem::Solid& solid = *built.solids[static_cast<std::size_t>(scene.solids.index(entry.name))];
+    const Eigen::Vector3d velocity = build::to_eigen(entry.value.velocity.value_or(base::Vec3{}));
+    const Eigen::Vector3d omega = build::to_eigen(entry.value.angular_velocity.value_or(base::Vec3{}));
+    const Eigen::Vector3d centre = solid.centre_of_mass(q);
+    for (Eigen::Index first = solid.q_slice().first; first < solid.q_slice().end(); first += 3) {
+      v.segment<3>(first) += velocity + omega.cross(Eigen::Vector3d(q.segment<3>(first)) - centre);
+    }
+    solid.keep_free(v);
+  }
+}
+
 }  // namespace
 
 Eigen::VectorXd initial_coordinates(const scene::Scene& scene, const build::BuiltModel& built) {
@@ -255,10 +270,20 @@ Eigen::VectorXd initial_coordinates(const scene::Scene& scene, const build::Buil
   return x;
 }
 
-Outcome settle(const scene::Scene& scene, const build::BuiltModel& built, Eigen::VectorXd& x) {
+statics::StaticState starting_point(const scene::Scene& scene, const build::BuiltModel& built) {
+  const model::Model& model = *built.model;
+  statics::StaticState start{.x = initial_coordinates(scene, built),
+                             .multipliers = Eigen::VectorXd::Zero(built.manifold->n_loop_rows()),
+                             .q = Eigen::VectorXd::Zero(model.n_q()),
+                             .y = Eigen::VectorXd::Zero(model.n_y())};
+  built.manifold->configuration(start.x, start.q);
+  for (const auto& part : model.substructures) part->start(start.q, start.y);
+  return start;
+}
+
+Outcome settle(const scene::Scene& scene, const build::BuiltModel& built, statics::StaticState& state) {
   std::vector<double> u(built.model->controls.size());
   built.model->evaluate_controls(0.0, u);
-  statics::StaticState state{.x = x, .multipliers = Eigen::VectorXd::Zero(built.manifold->n_loop_rows())};
   statics::SweepOptions options{.from = 0.0, .to = 1.0, .steps = 4};
   options.equilibrium.tolerance = scene.solver.tolerance;
   statics::Sweep sweep(*built.model, std::vector<double>(u.size(), 0.0), u, options);
@@ -267,7 +292,6 @@ Outcome settle(const scene::Scene& scene, const build::BuiltModel& built, Eigen:
     return {.status = variational::Status::loss_of_equilibrium,
             .sentence = "no static equilibrium under the controls at t = 0: " + result.sentence};
   }
-  x = state.x;
   return {};
 }
 
@@ -306,36 +330,42 @@ Outcome initial_state(const scene::Scene& scene, const build::BuiltModel& built,
                       const std::optional<results::Checkpoint>& earlier, variational::State& state) {
   const multibody::TreeManifold& manifold = *built.manifold;
   Eigen::VectorXd rates;
+  variational::NodeValues values;
   state = {};
   std::vector<double> u(built.model->controls.size());
   built.model->evaluate_controls(scene.dynamics ? 0.5 * scene.dynamics->step : 0.0, u);
   if (earlier) {
-    state = state_of(*earlier, scene, manifold);
+    state = state_of(*earlier, scene, *built.model);
     variational::NodeEvaluator nodes(*built.model, "auto");
-    variational::NodeValues values;
-    manifold.configuration(state.x, state.q);
     nodes.evaluate(state, u, u, values);
     rates = values.rate;
   } else {
-    state.x = initial_coordinates(scene, built);
+    statics::StaticState start = starting_point(scene, built);
     if (scene.initial.from.kind == scene::InitialFrom::Kind::static_equilibrium) {
-      const Outcome outcome = settle(scene, built, state.x);
+      const Outcome outcome = settle(scene, built, start);
       if (!outcome.completed()) return outcome;
     }
+    state.x = std::move(start.x);
+    state.q = std::move(start.q);
+    state.y = std::move(start.y);
   }
   const Eigen::VectorXd added = initial_rates(scene, built, state.x);
   rates = rates.size() == 0 ? added : Eigen::VectorXd(rates + added);
-  state.q.setZero(manifold.n_q());
   manifold.configuration(state.x, state.q);
   const auto frame = manifold.make_frame();
   manifold.update(state.x, state.q, *frame);
-  Eigen::VectorXd v = Eigen::VectorXd::Zero(manifold.n_q());
+  Eigen::VectorXd v = values.v.size() > 0 ? values.v : Eigen::VectorXd(Eigen::VectorXd::Zero(built.model->n_q()));
+  v.head(manifold.n_q()).setZero();
   manifold.lift(*frame, rates, v);
+  add_solid_velocities(scene, built, state.q, v);
   variational::NodeEvaluator(*built.model, "auto").momentum_of(state.q, v, u, state.p);
   state.step = 0;
   state.t = 0.0;
   state.increment = (scene.dynamics ? scene.dynamics->step : 0.0) * rates;
   state.multipliers = Eigen::VectorXd::Zero(manifold.n_loop_rows());
+  state.advance.resize(0);
+  if (!built.solids.empty()) state.advance = (scene.dynamics ? scene.dynamics->step : 0.0) * v;
+  state.factor = {};
   return {};
 }
 

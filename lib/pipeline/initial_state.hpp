@@ -5,6 +5,7 @@
 #include "build/built_model.hpp"
 #include "pipeline/outcome.hpp"
 #include "results/recorder.hpp"
+#include "statics/equilibrium.hpp"
 #include "variational/state.hpp"
 
 namespace muldi::pipeline {
@@ -13,8 +14,11 @@ namespace muldi::pipeline {
 /// positions contradict the loops, or for a pose that no element can have (ends that coincide).
 Eigen::VectorXd initial_coordinates(const scene::Scene& scene, const build::BuiltModel& built);
 
-/// The static equilibrium under the controls at t = 0, from `x`; the outcome is not completed if there is none.
-Outcome settle(const scene::Scene& scene, const build::BuiltModel& built, Eigen::VectorXd& x);
+/// The pose of initial_coordinates with the solids in their reference.
+statics::StaticState starting_point(const scene::Scene& scene, const build::BuiltModel& built);
+
+/// Moves `state` to the static equilibrium under the controls at t = 0; the outcome is not completed if there is none.
+Outcome settle(const scene::Scene& scene, const build::BuiltModel& built, statics::StaticState& state);
 
 /// Minimal velocities of the given joint and body velocities (least norm) and joint momenta; InputError if they
 /// contradict each other or the loops.

@@ -1,5 +1,7 @@
 #include "pipeline/node_rows.hpp"
 
+#include <algorithm>
+
 namespace muldi::pipeline {
 
 namespace dim = base::dimension;
@@ -10,19 +12,22 @@ NodeRows::NodeRows(results::Recorder& recorder, const scene::Scene& scene, const
       built_(built),
       kind_(kind),
       units_(scene.units),
-      prefix_(kind == Kind::dynamics ? "" : "statics/") {
-  if (kind == Kind::dynamics) {
-    series_ = recorder_.declare_series({.axis = "time",
-                                        .unit = units_.unit_name(dim::time),
-                                        .doc = "time of the nodes",
-                                        .expected_rows = expected_rows});
-  } else {
+      prefix_(kind == Kind::dynamics ? "" : "statics/"),
+      record_every_(scene.record.every) {
+  results::SeriesSpec axis{
+      .axis = "time", .unit = units_.unit_name(dim::time), .doc = "time of the nodes", .expected_rows = expected_rows};
+  if (kind == Kind::statics) {
     const bool swept = scene.statics->control.has_value();
-    series_ = recorder_.declare_series({.axis = "statics/load",
-                                        .unit = swept ? units_.unit_name(scene.statics->unit) : "1",
-                                        .doc = swept ? "value of the swept control" : "factor of all controls at t = 0",
-                                        .expected_rows = expected_rows});
+    axis.axis = "statics/load";
+    axis.unit = swept ? units_.unit_name(scene.statics->unit) : "1";
+    axis.doc = swept ? "value of the swept control" : "factor of all controls at t = 0";
   }
+  series_ = recorder_.declare_series(axis);
+  fields_.emplace(
+      recorder, built, units_,
+      FieldAxis{
+          .prefix = prefix_, .name = kind == Kind::dynamics ? "times" : "load", .unit = axis.unit, .doc = axis.doc},
+      expected_rows);
   declare_common();
   if (kind == Kind::dynamics) {
     declare_dynamics();
@@ -121,7 +126,9 @@ void NodeRows::write(const variational::NodeRecord& node) {
                              .v = node.values.v,
                              .constraint_force = node.constraint_force,
                              .multipliers = node.multipliers,
-                             .u = node.u};
+                             .y = node.state.y,
+                             .u = node.u,
+                             .y_after = &node.y_after};
   write_common(view, node.values.parts);
   const double total = node.values.total.kinetic + node.values.total.potential();
   const variational::Ledger& ledger = node.ledger;
@@ -134,15 +141,17 @@ void NodeRows::write(const variational::NodeRecord& node) {
   recorder_.append(channel_.linear, std::span<const double>(node.values.linear_momentum.data(), 3));
   recorder_.append(channel_.angular, std::span<const double>(node.values.angular_momentum.data(), 3));
   recorder_.append(channel_.residual, node.report.residual);
-  recorder_.append(channel_.violation, built_.manifold->violation(node.state.q));
+  recorder_.append(channel_.violation, std::max(built_.manifold->violation(node.state.q), node.report.violation));
   recorder_.append(channel_.iterations, node.report.iterations);
   recorder_.append(channel_.factorisations, node.report.factorisations);
+  fields_->write(view, node.t, node.step / record_every_, node.last);
   recorder_.append(series_.axis, node.t);
 }
 
 void NodeRows::write(const Equilibrium& equilibrium, const model::NodeView& at) {
   model::NodeView view = at;
   view.serial = serial_++;
+  fields_->write(view, equilibrium.load, view.serial, equilibrium.last);
   write_common(view, equilibrium.parts);
   recorder_.append(channel_.residual, equilibrium.residual);
   recorder_.append(channel_.violation, equilibrium.violation);

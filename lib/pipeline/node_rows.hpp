@@ -1,9 +1,11 @@
 #pragma once
 /// Rows of a series of nodes: observables, controls, energies, momenta, solver figures (scene format, section 4).
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "build/built_model.hpp"
+#include "pipeline/field_rows.hpp"
 #include "results/recorder.hpp"
 #include "variational/time_loop.hpp"
 
@@ -29,6 +31,7 @@ class NodeRows {
     double residual;
     double violation;
     std::span<const model::Energy> parts;
+    bool last;  ///< of the curve
   };
   void write(const Equilibrium& equilibrium, const model::NodeView& view);
 
@@ -60,6 +63,8 @@ class NodeRows {
     results::Channel iterations, residual, violation, factorisations;
     results::Channel stable;
   } channel_;
+  std::optional<FieldRows> fields_;
+  long record_every_;
   long serial_ = 0;
 };
 

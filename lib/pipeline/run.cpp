@@ -47,7 +47,7 @@ class DynamicsRun {
         options_(loop_options(scene, built)),
         rows_(recorder, scene, built, NodeRows::Kind::dynamics,
               static_cast<std::size_t>(options_.steps / options_.record_every + 2)),
-        checkpoints_(*built.manifold, rows_.observed().size()) {
+        checkpoints_(*built.model, rows_.observed().size()) {
     recorder.declare_checkpoint(checkpoints_.first());
   }
 
@@ -56,8 +56,9 @@ class DynamicsRun {
   }
 
   void resume(const results::Checkpoint& checkpoint) {
-    state_ = state_of(checkpoint, scene_, *built_.manifold);
+    state_ = state_of(checkpoint, scene_, *built_.model);
     state_.t = static_cast<double>(state_.step) * options_.dt;
+    restore_memory(checkpoint, *built_.model);
     restore(checkpoint, ledger_, last_, rows_.observed());
   }
 

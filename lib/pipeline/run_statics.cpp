@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "base/error.hpp"
 #include "pipeline/initial_state.hpp"
 
 namespace muldi::pipeline {
@@ -12,14 +13,13 @@ StaticsRun::StaticsRun(const scene::Scene& scene, const build::BuiltModel& built
       recorder_(recorder),
       rows_(recorder, scene, built, NodeRows::Kind::statics, static_cast<std::size_t>(scene.statics->steps) + 1),
       parts_(built.model->parts().size()),
-      zero_q_(Eigen::VectorXd::Zero(built.manifold->n_q())),
+      zero_q_(Eigen::VectorXd::Zero(built.model->n_q())),
       zero_v_(Eigen::VectorXd::Zero(built.manifold->n_v())),
       constraint_force_(zero_q_) {}
 
-void StaticsRun::prepare() {
-  state_.x = initial_coordinates(scene_, built_);
-  state_.multipliers = Eigen::VectorXd::Zero(built_.manifold->n_loop_rows());
-}
+void StaticsRun::prepare() { state_ = starting_point(scene_, built_); }
+
+double StaticsRun::last_load() const { return scene_.statics->control ? *scene_.statics->to : 1.0; }
 
 void StaticsRun::record(const statics::SweepPoint& point) {
   const std::span<const double> x(point.state.x.data(), static_cast<std::size_t>(point.state.x.size()));
@@ -32,13 +32,15 @@ void StaticsRun::record(const statics::SweepPoint& point) {
                              .v = zero_q_,
                              .constraint_force = constraint_force_,
                              .multipliers = point.state.multipliers,
+                             .y = point.y,
                              .u = point.u};
   rows_.write({.load = point.load,
                .stable = point.report.stability == statics::Stability::stable,
                .iterations = point.report.iterations,
                .residual = point.report.residual,
                .violation = built_.manifold->violation(point.q),
-               .parts = parts_},
+               .parts = parts_,
+               .last = point.load == last_load()},
               view);
 }
 

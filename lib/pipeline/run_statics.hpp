@@ -18,6 +18,7 @@ class StaticsRun {
 
  private:
   void record(const statics::SweepPoint& point);
+  double last_load() const;
 
   const scene::Scene& scene_;
   const build::BuiltModel& built_;

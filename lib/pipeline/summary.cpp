@@ -32,10 +32,73 @@ std::string chains_text(const scene::Scene& scene, const build::BuiltModel& buil
 
 std::string yes_no(bool yes) { return yes ? "yes" : "no"; }
 
+constexpr double mebi = 1048576.0;
+
+/// The kinds of equations of a solid that a run solves.
+std::vector<model::Linearisation> linearisations(const scene::Scene& scene) {
+  using model::Linearisation;
+  std::vector<Linearisation> kinds;
+  if (scene.dynamics) kinds.insert(kinds.end(), {Linearisation::step, Linearisation::velocity});
+  if (scene.statics || scene.initial.from.kind == scene::InitialFrom::Kind::static_equilibrium) {
+    kinds.push_back(Linearisation::rest);
+  }
+  return kinds;
+}
+
+/// The largest solver of a solid, and the bytes of all of them.
+model::SolverSize solver_size(const scene::Scene& scene, const fem::Solid& solid) {
+  model::SolverSize sum;
+  double largest = 0.0;
+  for (const model::Linearisation kind : linearisations(scene)) {
+    const model::SolverSize one = solid.solver_size(kind, "auto");
+    if (one.factor_bytes >= largest) sum.solver = one.solver;
+    largest = std::max(largest, one.factor_bytes);
+    sum.matrix_bytes += one.matrix_bytes;
+    sum.factor_bytes += one.factor_bytes;
+  }
+  return sum;
+}
+
+std::string word_of(fem::Formulation formulation) {
+  switch (formulation) {
+    case fem::Formulation::displacement:
+      return "displacement";
+    case fem::Formulation::mean_dilatation:
+      return "mean_dilatation";
+    case fem::Formulation::incompressible:
+      return "incompressible";
+    case fem::Formulation::incompressible_direct:
+      break;
+  }
+  return "incompressible_direct";
+}
+
+std::string potentials_text(const fem::SolidUnknowns& unknowns) {
+  if (!unknowns.has_field()) return "no potentials (none is prescribed)";
+  if (unknowns.n_free_potentials() == 0) return "no unknown potentials (all are prescribed)";
+  return base::format("unknown potentials {}", unknowns.n_free_potentials());
+}
+
+std::string solid_text(const scene::Scene& scene, const fem::Solid& solid, const model::SolverSize& size) {
+  const fem::SolidUnknowns& unknowns = solid.unknowns();
+  std::string text = base::format("  solid {}: {} nodes, {} cells, {}\n", solid.data().name, solid.elements().n_nodes(),
+                                  solid.elements().n_cells(), word_of(solid.data().formulation));
+  text +=
+      base::format("    free positions {}, {}, element pressures {}\n", unknowns.n_free_positions(),
+                   potentials_text(unknowns), solid.has_pressures() ? base::format("{}", solid.n_pressures()) : "no");
+  text += base::format("    viscous terms {}, mass {}\n", yes_no(solid.is_viscous()),
+                       scene.dynamics ? "yes" : "no (statics)");
+  if (!size.solver.empty()) {
+    text += base::format("    solver {}, matrices {:.1f} MiB, factors {:.1f} MiB\n", size.solver,
+                         size.matrix_bytes / mebi, size.factor_bytes / mebi);
+  }
+  return text;
+}
+
 /// Doubles of the results, of the tangent and of the states.
 double memory_bytes(const scene::Scene& scene, const build::BuiltModel& built) {
   const double tangent = static_cast<double>(built.model->pattern->n_values());
-  const double states = 40.0 * (built.manifold->n_q() + built.manifold->n_v());
+  const double states = 40.0 * static_cast<double>(built.model->n_q() + built.model->n_y() + built.manifold->n_v());
   double dense = 0.0;
   if (scene.statics) dense = 4.0 * built.manifold->n_v() * built.manifold->n_v();
   return 8.0 * (2.0 * tangent + states + dense);
@@ -48,7 +111,13 @@ double result_bytes(const scene::Scene& scene, const build::BuiltModel& built) {
   double rows = 0.0;
   if (scene.statics) rows += scene.statics->steps + 1.0;
   if (scene.dynamics) rows += static_cast<double>(scene.dynamics->n_steps()) / scene.record.every + 1.0;
-  return 8.0 * row * rows;
+  double fields = 0.0;
+  for (const model::FieldHistory& history : built.model->histories) {
+    double one = 0.0;
+    for (const auto& field : history.fields) one += static_cast<double>(field.observable.size());
+    fields += one * (rows / history.every + 1.0);
+  }
+  return 8.0 * (row * rows + fields);
 }
 
 }  // namespace
@@ -62,17 +131,29 @@ std::string summary(const scene::Scene& scene, const build::BuiltModel& built) {
       scene.bodies.size(), scene.joints.size(), assembled.muscles, assembled.free_actuators, assembled.springs,
       assembled.loads, assembled.joint_forces);
   text += chains_text(scene, built);
-  text += base::format(
-      "  degrees of freedom {}: {} minimal velocities less {} loop constraints; {} redundant coordinates\n",
-      manifold.n_v() - manifold.n_c(), manifold.n_v(), manifold.n_c(), manifold.n_q());
-  text += base::format("  assembled: gravity {}, damping {}, electric {}, finite elements no\n",
-                       yes_no(assembled.gravity), yes_no(assembled.damping), yes_no(assembled.electric));
-  text += base::format("  linear solver {}\n", manifold.make_solver(*built.model->pattern, built.linear)->name());
+  const bool mechanism = manifold.n_v() > 0 || built.solids.empty();
+  if (mechanism) {
+    text += base::format(
+        "  degrees of freedom {}: {} minimal velocities less {} loop constraints; {} redundant coordinates\n",
+        manifold.n_v() - manifold.n_c(), manifold.n_v(), manifold.n_c(), manifold.n_q());
+  }
+  text +=
+      base::format("  assembled: gravity {}, damping {}, electric {}, finite elements {}\n", yes_no(assembled.gravity),
+                   yes_no(assembled.damping), yes_no(assembled.electric), yes_no(!built.solids.empty()));
+  double of_solids = 0.0;
+  for (const fem::Solid* solid : built.solids) {
+    const model::SolverSize size = solver_size(scene, *solid);
+    text += solid_text(scene, *solid, size);
+    of_solids += size.matrix_bytes + size.factor_bytes;
+  }
+  if (mechanism) {
+    text += base::format("  linear solver {}\n", manifold.make_solver(*built.model->pattern, built.linear)->name());
+  }
   text +=
       base::format("  statics {}, dynamics {}\n", scene.statics ? base::format("{} steps", scene.statics->steps) : "no",
                    scene.dynamics ? base::format("{} steps", scene.dynamics->n_steps()) : "no");
-  text += base::format("  estimated memory {:.1f} MiB, results {:.1f} MiB\n", memory_bytes(scene, built) / 1048576.0,
-                       result_bytes(scene, built) / 1048576.0);
+  text += base::format("  estimated memory {:.1f} MiB, results {:.1f} MiB\n",
+                       (memory_bytes(scene, built) + of_solids) / mebi, result_bytes(scene, built) / mebi);
   return text;
 }
 

@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::size_t compress_from_bytes = std::size_t{64} << 10;
 constexpr std::size_t fixed_chunk_bytes = std::size_t{1} << 20;
-constexpr unsigned deflate_level = 1;  // after the shuffle filter higher levels gain little and cost much
+constexpr unsigned deflate_level = 1;        // after the shuffle filter higher levels gain little and cost much
+constexpr unsigned most_compact_links = 64;  // groups of fewer links are made and searched faster without an index
 constexpr std::size_t memory_growth = 4096;
 constexpr std::size_t max_rank = 8;
 constexpr unsigned swmr_attempts = 20;  // one millisecond in all
@@ -225,8 +226,6 @@ std::vector<double> DataSet::read_rows(std::size_t first, std::size_t rows) cons
   return values;
 }
 
-std::vector<double> DataSet::read() const { return read_rows(0, shape_.empty() ? 1 : shape_[0]); }
-
 std::int64_t File::check(std::int64_t result, const std::string& object) const {
   if (result < 0) fail_on(origin_, object);
   return result;
@@ -242,6 +241,8 @@ File File::create(const std::string& path) {
   H5Pset_fapl_core(access.get(), memory_growth, true);
   File file({path, Access::write});
   file.in_memory_ = true;
+  file.groups_creation_ = Id(H5Pcreate(H5P_GROUP_CREATE));
+  H5Pset_link_phase_change(file.groups_creation_.get(), most_compact_links, most_compact_links - 1);
   file.id_ = Id(file.check(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), ""));
   return file;
 }
@@ -268,26 +269,29 @@ File File::open(const std::string& path, Access access) {
   return file;
 }
 
-const Id& File::row_properties(const Shape& shape, RowStorage storage) {
-  Shape key(shape);
-  key[0] = storage.chunk_rows;
-  key.push_back(storage.compressed ? 1 : 0);
-  Id& creation = row_properties_[key];
-  if (creation.valid()) return creation;
-  creation = Id(H5Pcreate(H5P_DATASET_CREATE));
-  H5Pset_obj_track_times(creation.get(), false);
-  H5Pset_chunk(creation.get(), static_cast<int>(shape.size()), extents_of(shape, storage.chunk_rows).data());
-  if (storage.compressed) compress(creation);
-  if (!storage.compressed) H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER);  // whole chunks are written
-  return creation;
+std::pair<std::int64_t, const char*> File::place_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  if (!in_memory_ || slash == std::string::npos) return {id_.get(), path.c_str()};
+  const std::string own = path.substr(0, slash);
+  Id& group = groups_[own];
+  if (!group.valid()) {
+    const auto [parent, name] = place_of(own);
+    group = Id(check(H5Gcreate2(parent, name, H5P_DEFAULT, groups_creation_.get(), H5P_DEFAULT), own));
+  }
+  return {group.get(), path.c_str() + slash + 1};
 }
 
 DataSet File::create_rows(const ChannelSpec& spec, RowStorage storage) {
   Shape shape{0};
   shape.insert(shape.end(), spec.shape.begin(), spec.shape.end());
   const Id space = space_of(shape, extents_of(shape, H5S_UNLIMITED).data());
-  const Id& creation = row_properties(shape, storage);
-  Id id(check(H5Dcreate2(id_.get(), spec.path.c_str(), file_type(spec.type), space.get(), links_.get(), creation.get(),
+  const Id creation(H5Pcreate(H5P_DATASET_CREATE));
+  H5Pset_obj_track_times(creation.get(), false);
+  H5Pset_chunk(creation.get(), static_cast<int>(shape.size()), extents_of(shape, storage.chunk_rows).data());
+  if (storage.compressed) compress(creation);
+  if (!storage.compressed) H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER);  // whole chunks are written
+  const auto [group, name] = place_of(spec.path);
+  Id id(check(H5Dcreate2(group, name, file_type(spec.type), space.get(), links_.get(), creation.get(),
                          storage.compressed ? H5P_DEFAULT : rows_access_.get()),
               spec.path));
   return DataSet(std::move(id), origin_, spec, storage);
@@ -305,8 +309,8 @@ DataSet File::create_fixed(const FixedArray& array, bool overwritten) {
     compress(creation);
   }
   const hid_t on_disk = file_type(array.type);
-  Id id(check(H5Dcreate2(id_.get(), spec.path.c_str(), on_disk, space.get(), links_.get(), creation.get(), H5P_DEFAULT),
-              spec.path));
+  const auto [group, name] = place_of(spec.path);
+  Id id(check(H5Dcreate2(group, name, on_disk, space.get(), links_.get(), creation.get(), H5P_DEFAULT), spec.path));
   const hid_t type = memory_type(array.type);
   if (bytes > 0) check(H5Dwrite(id.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values()), spec.path);
   return DataSet(std::move(id), origin_, spec.path);
@@ -361,13 +365,6 @@ void File::set_attribute(const Attribute& attribute) {
   check(write_attribute(owner, name, value) ? 0 : -1, object);
 }
 
-std::optional<AttributeValue> File::attribute(const std::string& object, const std::string& name) const {
-  for (Attribute& attribute : attributes(object)) {
-    if (attribute.name == name) return std::move(attribute.value);
-  }
-  return {};
-}
-
 std::vector<Attribute> File::attributes(const std::string& object) const {
   std::vector<Attribute> result;
   if (!object.empty() && !contains(object)) return result;
@@ -386,6 +383,7 @@ std::vector<Attribute> File::attributes(const std::string& object) const {
 
 void File::flush() { check(H5Fflush(id_.get(), H5F_SCOPE_GLOBAL), ""); }
 void File::close() {
+  groups_.clear();
   if (!id_.close()) fail_on(origin_, "");
 }
 

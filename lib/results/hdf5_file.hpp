@@ -83,7 +83,7 @@ class DataSet {
   /// The same, converted to double.
   std::vector<double> read_rows(std::size_t first, std::size_t count) const;
   /// Reads everything, row-major.
-  std::vector<double> read() const;
+  std::vector<double> read() const { return read_rows(0, shape_.empty() ? 1 : shape_[0]); }
 
  private:
   void read_into(std::size_t first, std::size_t count, std::int64_t memory_type, void* values) const;
@@ -124,7 +124,12 @@ class File {
   /// Sets an attribute, replacing an older one; makes the group `object` if there is no such object.
   void set_attribute(const Attribute& attribute);
   /// An attribute of `object` (empty: the file), or nothing if there is none of a known type.
-  std::optional<AttributeValue> attribute(const std::string& object, const std::string& name) const;
+  std::optional<AttributeValue> attribute(const std::string& object, const std::string& name) const {
+    for (Attribute& attribute : attributes(object)) {
+      if (attribute.name == name) return std::move(attribute.value);
+    }
+    return {};
+  }
   /// All attributes of a known type of `object`, sorted by name.
   std::vector<Attribute> attributes(const std::string& object) const;
 
@@ -136,15 +141,17 @@ class File {
 
  private:
   explicit File(Origin origin);
-  /// Properties of a set of rows, made once for each kind.
-  const Id& row_properties(const Shape& shape, RowStorage storage);
   std::int64_t check(std::int64_t result, const std::string& object) const;
 
   Id id_;
   Origin origin_;
   Id links_;        ///< properties that make missing groups on the way
   Id rows_access_;  ///< properties that do without a chunk cache
-  std::map<Shape, Id> row_properties_;
+  /// The group that a new object belongs to, made if it is missing, and the object's own name there.
+  std::pair<std::int64_t, const char*> place_of(const std::string& path);
+
+  std::map<std::string, Id> groups_;  ///< open groups of a file in memory
+  Id groups_creation_;
   bool in_memory_ = false;
 };
 

@@ -49,7 +49,7 @@ std::string why_no_inertia(const Mat3& j) {
 void SceneCheck::materials() {
   for (const Entry<Material>& material : scene_.materials) {
     if (failed({"materials", material.name, "elastic"})) continue;
-    const std::string why = std::get<NeoHookean>(material.value.elastic.law).why_invalid();
+    const std::string why = material.value.elastic.why_invalid();
     if (!why.empty()) error({"materials", material.name, "elastic"}, why);
   }
 }

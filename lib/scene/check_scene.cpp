@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/text.hpp"
+#include "scene/check_solids.hpp"
 #include "scene/scene_check.hpp"
 
 namespace muldi::scene {
@@ -49,7 +50,8 @@ void SceneCheck::references() {
   const FamilyNames families[] = {{"body", scene_.bodies.names()},
                                   {"joint", scene_.joints.names()},
                                   {"control", scene_.controls.names()},
-                                  {"material", scene_.materials.names()}};
+                                  {"material", scene_.materials.names()},
+                                  {"solid", scene_.solids.names()}};
   for (const PendingReference& reference : context_.references()) {
     const FamilyNames& family = families[static_cast<int>(reference.family)];
     if (reference.family == Family::body && reference.name == ground) continue;
@@ -174,7 +176,11 @@ void check_scene(Scene& scene, const Node& root, ReadContext& context) {
   check.loads();
   check.initial();
   check.tasks();
+  SolidCheck solids(scene, check, context);
+  solids.solids();
+  solids.record();
   check.unused_controls();
+  solids.legacy_laws();
 }
 
 }  // namespace muldi::scene

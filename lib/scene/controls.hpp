@@ -10,7 +10,17 @@ namespace muldi::scene {
 
 /// What a control prescribes. `field` is the nominal (reference) electric field; `layer_voltage` and `total_voltage`
 /// become a field through the muscle's layer thickness and rest length.
-enum class ControlQuantity { field, layer_voltage, total_voltage, force, torque, potential, charge, displacement };
+enum class ControlQuantity {
+  field,
+  layer_voltage,
+  total_voltage,
+  force,
+  torque,
+  potential,
+  charge,
+  displacement,
+  pressure
+};
 
 inline std::span<const base::Word<ControlQuantity>> words(ControlQuantity) {
   using enum ControlQuantity;
@@ -20,9 +30,10 @@ inline std::span<const base::Word<ControlQuantity>> words(ControlQuantity) {
       {.word = "total_voltage", .value = total_voltage, .doc = "voltage over the rest length of muscles"},
       {.word = "force", .value = force, .doc = "force of loads and along joints"},
       {.word = "torque", .value = torque, .doc = "torque of loads and about joints"},
-      {.word = "potential", .value = potential, .doc = "electric potential of electrodes of solids", .later = true},
-      {.word = "charge", .value = charge, .doc = "charge of electrodes of solids", .later = true},
-      {.word = "displacement", .value = displacement, .doc = "prescribed displacement of solids", .later = true},
+      {.word = "potential", .value = potential, .doc = "electric potential on solids"},
+      {.word = "charge", .value = charge, .doc = "charge of electrodes of solids"},
+      {.word = "displacement", .value = displacement, .doc = "prescribed displacement of solids"},
+      {.word = "pressure", .value = pressure, .doc = "pressure and components of traction on solids"},
   };
   return all;
 }
@@ -43,6 +54,8 @@ constexpr base::Dimension dimension_of(ControlQuantity quantity) {
       return base::dimension::torque;
     case charge:
       return base::dimension::charge;
+    case pressure:
+      return base::dimension::stress;
     case displacement:
       break;
   }

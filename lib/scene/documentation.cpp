@@ -14,7 +14,9 @@ std::string text_of(const Node& schema, std::string_view key) {
 }
 
 std::string kind_of(const Node& schema) {
-  if (schema.find("$ref") != nullptr) return "function of time";
+  if (const Node* reference = schema.find("$ref")) {
+    return reference->text == "#/definitions/where" ? "where" : "function of time";
+  }
   if (const Node* all = schema.find("allOf"); all != nullptr && schema.find("type") == nullptr) {
     return kind_of(all->items.front());
   }
@@ -98,7 +100,9 @@ void append(std::vector<DocumentedField>& rows, const Node& object, const std::s
 
 std::vector<DocumentedField> documented_fields() {
   std::vector<DocumentedField> rows;
-  append(rows, schema_tree(), {});
+  const Node tree = schema_tree();
+  append(rows, tree, {});
+  append_below(rows, *tree.find("definitions")->find("where"), "where");
   return rows;
 }
 

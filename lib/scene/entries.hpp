@@ -72,7 +72,7 @@ class Named {
 };
 
 /// What a name in a scene refers to.
-enum class Family { body, joint, control, material };
+enum class Family { body, joint, control, material, solid };
 
 /// The name of an entry of another section; the reader has made sure that it exists.
 template <Family family>
@@ -86,6 +86,7 @@ using BodyName = Reference<Family::body>;  ///< may be `ground`
 using JointName = Reference<Family::joint>;
 using ControlName = Reference<Family::control>;
 using MaterialName = Reference<Family::material>;
+using SolidName = Reference<Family::solid>;
 
 /// The body that does not move; world axes.
 inline constexpr std::string_view ground = "ground";

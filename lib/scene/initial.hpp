@@ -8,6 +8,7 @@
 #include "scene/bodies.hpp"
 #include "scene/entries.hpp"
 #include "scene/joints.hpp"
+#include "scene/solids.hpp"
 
 namespace muldi::scene {
 
@@ -93,6 +94,7 @@ struct Initial {
   InitialFrom from = {};
   Named<JointState> joints = {};
   Named<BodyVelocity> bodies = {};
+  Named<SolidVelocity> solids = {};
   Named<JointMomentum> momentum = {};
 
   template <class Self, class Visit>
@@ -108,11 +110,11 @@ struct Initial {
         self.from);
     visit(Field{.key = "joints", .doc = "joint coordinates and velocities by joint", .need = optional}, self.joints);
     visit(Field{.key = "bodies", .doc = "velocities by body", .need = optional}, self.bodies);
+    visit(Field{.key = "solids", .doc = "velocities by solid", .need = optional}, self.solids);
     visit(Field{.key = "momentum",
                 .doc = "generalised momentum of joint coordinates of the whole system (a shock), by joint",
                 .need = optional},
           self.momentum);
-    visit(Later{.key = "solids", .doc = "velocities of solids"});
   }
   friend bool operator==(const Initial&, const Initial&) = default;
 };

@@ -106,6 +106,30 @@ std::optional<std::size_t> read_word(ReadContext& context, const Node& node, con
   return {};
 }
 
+std::optional<std::size_t> read_component_name(ReadContext& context, const Node& node,
+                                               const std::vector<std::string>& names) {
+  std::vector<std::string> found;
+  std::optional<std::size_t> position;
+  for (std::size_t i = 0; node.is_map() && i < names.size(); ++i) {
+    if (node.find(names[i]) == nullptr) continue;
+    found.push_back(names[i]);
+    position = i;
+  }
+  if (found.size() == 1) return position;
+  if (found.size() > 1) {
+    context.error(node.mark, "give only one of " + base::joined(found));
+    return {};
+  }
+  std::string message = "needs a map with one of " + base::joined(names) + ", got " + shown(node);
+  if (node.is_map() && !node.entries.empty()) {
+    const std::string& key = node.entries.front().key;
+    message += " with " + base::in_quotes(key);
+    if (!base::nearest(key, names).empty()) message += base::did_you_mean(key, names);
+  }
+  context.error(node.mark, std::move(message));
+  return {};
+}
+
 bool check_name(ReadContext& context, const Mark& mark, const std::string& name) {
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
   const auto inner = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '-'; };

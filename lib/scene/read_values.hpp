@@ -23,6 +23,9 @@ bool read_value(ReadContext& context, const Node& node, const base::Field& field
 bool read_numbers(ReadContext& context, const Node& node, const base::Field& field, std::span<double> values);
 /// The position of the word among `words`; nothing and an error if it is none.
 std::optional<std::size_t> read_word(ReadContext& context, const Node& node, const std::vector<std::string>& words);
+/// The position of the one of `names` that is a key of the map; nothing and an error if it has none or several.
+std::optional<std::size_t> read_component_name(ReadContext& context, const Node& node,
+                                               const std::vector<std::string>& names);
 /// Whether `name` may name an entry; an error if not.
 bool check_name(ReadContext& context, const Mark& mark, const std::string& name);
 void report_later(ReadContext& context, const Mark& mark, std::string_view doc);
@@ -38,6 +41,13 @@ bool read_value(ReadContext& context, const Node& node, const base::Field& field
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, Drive& value);
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, base::TimeFunction& value);
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, JointMomentum& value);
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, fem::Interval& value);
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, Where& value);
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, SolidMaterial& value);
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, RecordedFields& value);
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, ProbePoint& value);
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, ProbeRegion& value);
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, ElectrodeName& value);
 void read_coordinates(ReadContext& context, const Node& node, const CoordinateField& field,
                       std::vector<double>& values);
 void read_coordinates(ReadContext& context, const Node& node, const CoordinateField& field, std::vector<Drive>& values);
@@ -53,6 +63,8 @@ bool prepare(ReadContext&, Entry<T>&) {
 bool prepare(ReadContext& context, Entry<JointState>& state);
 bool prepare(ReadContext& context, Entry<JointMomentum>& momentum);
 bool prepare(ReadContext& context, Entry<BodyVelocity>& velocity);
+bool prepare(ReadContext& context, Entry<SolidVelocity>& velocity);
+bool prepare(ReadContext& context, Entry<RecordedFields>& fields);
 
 /// The same for a described value outside of a named section.
 template <class T>
@@ -60,10 +72,34 @@ bool prepare(ReadContext&, const Node&, T&) {
   return true;
 }
 bool prepare(ReadContext& context, const Node& node, Statics& value);
+bool prepare(ReadContext& context, const Node& node, Condition& value);
+bool prepare(ReadContext& context, const Node& node, Electrode& value);
+bool prepare(ReadContext& context, const Node& node, SolidAttachment& value);
 
 template <std::size_t n>
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, std::array<double, n>& value) {
   return read_numbers(context, node, field, value);
+}
+
+template <class T>
+inline constexpr bool is_optional = false;
+template <class T>
+inline constexpr bool is_optional<std::optional<T>> = true;
+
+/// A list of n values; ~ where they are optional.
+template <class T, std::size_t n>
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, std::array<T, n>& values) {
+  if (!node.is_sequence() || node.items.size() != n) {
+    context.error(node.mark, "needs a list of " + std::to_string(n) + ", got " + shown(node));
+    return false;
+  }
+  bool good = true;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (is_optional<T> && node.items[i].is_null()) continue;
+    const ReadContext::Scope scope(context, i);
+    good = read_value(context, node.items[i], field, values[i]) && good;
+  }
+  return good;
 }
 
 /// An enum with words().
@@ -121,6 +157,30 @@ bool read_value(ReadContext& context, const Node& node, const base::Field&, T& v
   T::describe(value, reader);
   reader.finish();
   return context.diagnostics().size() == n_errors;
+}
+
+/// The component of a variant: `{name: fields}`, or, where it says `named_by_field`, its fields with one of its name.
+template <class Component>
+bool read_component(ReadContext& context, const Node& node, Component& component) {
+  const std::size_t n_errors = context.diagnostics().size();
+  FieldReader reader(context, node);
+  if constexpr (requires { Component::named_by_field; }) {
+    Component::describe(component, reader);
+  } else {
+    reader(base::Field{.key = Component::name, .doc = Component::doc}, component);
+  }
+  reader.finish();
+  return context.diagnostics().size() == n_errors;
+}
+
+template <class... Components>
+bool read_value(ReadContext& context, const Node& node, const base::Field&, std::variant<Components...>& value) {
+  const std::optional<std::size_t> chosen = read_component_name(context, node, {std::string(Components::name)...});
+  if (!chosen) return false;
+  std::size_t i = 0;
+  bool good = true;
+  ((i++ == *chosen ? void(good = read_component(context, node, value.template emplace<Components>())) : void()), ...);
+  return good;
 }
 
 template <class T>

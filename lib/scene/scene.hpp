@@ -21,6 +21,7 @@
 #include "scene/joints.hpp"
 #include "scene/materials.hpp"
 #include "scene/muscles.hpp"
+#include "scene/solids.hpp"
 #include "scene/tasks.hpp"
 
 namespace muldi::scene {
@@ -38,6 +39,7 @@ struct Scene {
   Named<Joint> joints = {};
   Named<Control> controls = {};
   Named<Muscle> muscles = {};
+  Named<Solid> solids = {};
   Named<Spring> springs = {};
   Named<Load> loads = {};
   Initial initial = {};
@@ -60,7 +62,7 @@ struct Scene {
             .key = "units", .doc = "units of bare numbers and of the results; default mm, g, ms, A", .need = optional},
         self.units);
     visit(Field{.key = "gravity",
-                .doc = "acceleration of bodies and muscles; default none",
+                .doc = "acceleration of bodies, muscles and solids; default none",
                 .unit = dimension::acceleration,
                 .need = optional},
           self.gravity);
@@ -69,6 +71,7 @@ struct Scene {
     visit(Field{.key = "joints", .doc = "joints by name", .need = optional}, self.joints);
     visit(Field{.key = "controls", .doc = "{<quantity>: function of time} by name", .need = optional}, self.controls);
     visit(Field{.key = "muscles", .doc = "muscles by name", .need = optional}, self.muscles);
+    visit(Field{.key = "solids", .doc = "deformable solids by name", .need = optional}, self.solids);
     visit(Field{.key = "springs", .doc = "springs between points by name", .need = optional}, self.springs);
     visit(Field{.key = "loads", .doc = "forces and torques on bodies by name", .need = optional}, self.loads);
     visit(Field{.key = "initial", .doc = "state at t = 0", .need = optional}, self.initial);
@@ -76,7 +79,6 @@ struct Scene {
     visit(Field{.key = "dynamics", .doc = "motion to compute", .need = optional}, self.dynamics);
     visit(Field{.key = "record", .doc = "what is recorded", .need = optional}, self.record);
     visit(Field{.key = "solver", .doc = "numerical options", .need = optional}, self.solver);
-    visit(Later{.key = "solids", .doc = "deformable solids"});
     visit(Later{.key = "optimal_control", .doc = "optimal control"});
   }
 
@@ -84,8 +86,9 @@ struct Scene {
   friend bool operator==(const Scene& a, const Scene& b) {
     return a.version == b.version && a.title == b.title && a.units == b.units && a.gravity == b.gravity &&
            a.materials == b.materials && a.bodies == b.bodies && a.joints == b.joints && a.controls == b.controls &&
-           a.muscles == b.muscles && a.springs == b.springs && a.loads == b.loads && a.initial == b.initial &&
-           a.statics == b.statics && a.dynamics == b.dynamics && a.record == b.record && a.solver == b.solver;
+           a.muscles == b.muscles && a.solids == b.solids && a.springs == b.springs && a.loads == b.loads &&
+           a.initial == b.initial && a.statics == b.statics && a.dynamics == b.dynamics && a.record == b.record &&
+           a.solver == b.solver;
   }
 };
 

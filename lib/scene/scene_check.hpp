@@ -29,6 +29,7 @@ class SceneCheck {
   void unused_controls();
 
  private:
+  friend class SolidCheck;
   using Keys = std::initializer_list<std::string_view>;
 
   /// An error or warning about the entry under these keys, or the deepest that exists.

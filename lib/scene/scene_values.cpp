@@ -13,7 +13,7 @@ struct ShearAndPoisson {
   double nu = std::numeric_limits<double>::quiet_NaN();
 };
 
-ShearAndPoisson with_young(double young, const NeoHookean& law) {
+ShearAndPoisson with_young(double young, const ElasticConstants& law) {
   if (law.poisson) return {.mu = young / (2 * (1 + *law.poisson)), .nu = *law.poisson};
   if (law.mu) return {.mu = *law.mu, .nu = young / (2 * *law.mu) - 1};
   if (law.kappa) return {.mu = 3 * *law.kappa * young / (9 * *law.kappa - young), .nu = 0.5 - young / (6 * *law.kappa)};
@@ -22,13 +22,13 @@ ShearAndPoisson with_young(double young, const NeoHookean& law) {
   return {.mu = (young - 3 * lambda + root) / 4, .nu = 2 * lambda / (young + lambda + root)};
 }
 
-ShearAndPoisson with_poisson(double nu, const NeoHookean& law) {
+ShearAndPoisson with_poisson(double nu, const ElasticConstants& law) {
   if (law.mu) return {.mu = *law.mu, .nu = nu};
   if (law.kappa) return {.mu = 3 * *law.kappa * (1 - 2 * nu) / (2 * (1 + nu)), .nu = nu};
   return {.mu = *law.lambda * (1 - 2 * nu) / (2 * nu), .nu = nu};
 }
 
-ShearAndPoisson shear_and_poisson(const NeoHookean& law) {
+ShearAndPoisson shear_and_poisson(const ElasticConstants& law) {
   const int n_given = int{law.young.has_value()} + int{law.poisson.has_value()} + int{law.mu.has_value()} +
                       int{law.lambda.has_value()} + int{law.kappa.has_value()};
   if (n_given != 2) return {};
@@ -41,10 +41,10 @@ ShearAndPoisson shear_and_poisson(const NeoHookean& law) {
 
 }  // namespace
 
-double NeoHookean::shear_modulus() const { return shear_and_poisson(*this).mu; }
-double NeoHookean::poisson_ratio() const { return shear_and_poisson(*this).nu; }
+double ElasticConstants::shear_modulus() const { return shear_and_poisson(*this).mu; }
+double ElasticConstants::poisson_ratio() const { return shear_and_poisson(*this).nu; }
 
-std::string NeoHookean::why_invalid() const {
+std::string ElasticConstants::why_invalid() const {
   const ShearAndPoisson constants = shear_and_poisson(*this);
   if (std::isnan(constants.mu) || std::isnan(constants.nu)) {
     return "needs two constants of young, poisson, mu, lambda, kappa that determine the others";
@@ -52,6 +52,15 @@ std::string NeoHookean::why_invalid() const {
   if (!(constants.mu > 0.0) || !std::isfinite(constants.mu)) return "the constants give no positive shear modulus";
   if (!(constants.nu > -1.0 && constants.nu <= 0.5)) return "the constants give a Poisson's ratio outside (-1, 0.5]";
   return {};
+}
+
+double poisson_of(double mu, const std::optional<double>& poisson, const std::optional<double>& kappa) {
+  return ElasticConstants{.poisson = poisson, .mu = mu, .kappa = kappa}.poisson_ratio();
+}
+
+std::string why_no_bulk(double mu, const std::optional<double>& poisson, const std::optional<double>& kappa) {
+  if (poisson.has_value() == kappa.has_value()) return "needs one of poisson and kappa";
+  return ElasticConstants{.poisson = poisson, .mu = mu, .kappa = kappa}.why_invalid();
 }
 
 std::span<const Coordinate> Joint::coordinates() const {

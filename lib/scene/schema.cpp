@@ -70,6 +70,15 @@ Node schema_of(Tag<Control>, const base::Field& field);
 Node schema_of(Tag<Drive>, const base::Field& field);
 Node schema_of(Tag<std::optional<Stops>>, const base::Field& field);
 Node schema_of(Tag<JointMomentum>, const base::Field& field);
+Node schema_of(Tag<fem::Interval>, const base::Field& field);
+Node schema_of(Tag<Where>, const base::Field& field);
+Node schema_of(Tag<SolidMaterial>, const base::Field& field);
+Node schema_of(Tag<RecordedFields>, const base::Field& field);
+Node schema_of(Tag<ProbePoint>, const base::Field& field);
+Node schema_of(Tag<ProbeRegion>, const base::Field& field);
+Node schema_of(Tag<ElectrodeName>, const base::Field& field);
+template <class... Components>
+Node schema_of(Tag<std::variant<Components...>>, const base::Field& field);
 Node schema_of(Tag<base::UnitSystem>, const base::Field& field);
 Node schema_of(Tag<base::TimeFunction>, const base::Field& field);
 template <Family family>
@@ -193,9 +202,15 @@ Node schema_of(Tag<T>, const base::Field&) {
   return object_of([&](SchemaVisitor& visitor) { T::describe(value, visitor); });
 }
 
+template <class T>
+inline constexpr bool is_optional = false;
+template <class T>
+inline constexpr bool is_optional<std::optional<T>> = true;
+
 template <class T, std::size_t n>
 Node schema_of(Tag<std::array<T, n>>, const base::Field& field) {
-  return list_of(schema_of(Tag<T>{}, field), n);
+  Node item = schema_of(Tag<T>{}, field);
+  return list_of(is_optional<T> ? any_of({std::move(item), typed("null")}) : std::move(item), n);
 }
 template <class T>
 Node schema_of(Tag<std::optional<T>>, const base::Field& field) {
@@ -221,6 +236,40 @@ requires std::is_enum_v<T> Node schema_of(Tag<T>, const base::Field&) {
   }
   return choices(known);
 }
+
+/// One component of a variant, see read_component().
+template <class Component>
+Node schema_of_component(const base::Field& field) {
+  if constexpr (requires { Component::named_by_field; }) {
+    return schema_of<Component>(Tag<Component>{}, field);
+  } else {
+    return object_of([](SchemaVisitor& visitor) {
+      Component component;
+      visitor(base::Field{.key = Component::name, .doc = Component::doc}, component);
+    });
+  }
+}
+template <class... Components>
+Node schema_of(Tag<std::variant<Components...>>, const base::Field& field) {
+  return any_of({schema_of_component<Components>(field)...});
+}
+
+Node schema_of(Tag<fem::Interval>, const base::Field& field) {
+  return schema_of(Tag<std::array<std::optional<double>, 2>>{}, field);
+}
+Node schema_of(Tag<Where>, const base::Field&) { return Node::map().with("$ref", text("#/definitions/where")); }
+Node schema_of(Tag<SolidMaterial>, const base::Field& field) {
+  return any_of({name_text(), schema_of(Tag<Named<MaterialName>>{}, field)});
+}
+Node schema_of(Tag<RecordedFields>, const base::Field& field) {
+  return any_of(
+      {schema_of<RecordedFields>(Tag<RecordedFields>{}, field), schema_of(Tag<std::vector<SolidField>>{}, field)});
+}
+Node schema_of(Tag<ProbePoint>, const base::Field&) { return typed("string").with("pattern", text("[@.]")); }
+Node schema_of(Tag<ProbeRegion>, const base::Field& field) {
+  return any_of({schema_of<ProbeRegion>(Tag<ProbeRegion>{}, field), typed("string").with("pattern", text("@"))});
+}
+Node schema_of(Tag<ElectrodeName>, const base::Field&) { return typed("string").with("pattern", text("\\.")); }
 
 Node schema_of(Tag<Inertia>, const base::Field& field) {
   const Node moments = schema_of(Tag<Vec3>{}, field);
@@ -302,6 +351,13 @@ Node function_of_time() {
                  schema_of(Tag<ExpressionForm>{}, plain), schema_of(Tag<FileForm>{}, plain)});
 }
 
+Node where_on_a_solid() {
+  Node node = schema_of(Tag<base::VariantOf<fem::SelectorTypes>>{}, base::Field{.key = {}, .doc = {}});
+  std::vector<Node>& options = node.find("anyOf")->items;
+  options.insert(options.begin(), typed("string").with("description", text("name of a face or of a set, or `all`")));
+  return node;
+}
+
 }  // namespace
 
 Node schema_tree() {
@@ -311,7 +367,8 @@ Node schema_tree() {
                   .with("description", text("A scene of muldi-sim, format version " + std::to_string(format_version)));
   Node scene = schema_of(Tag<Scene>{}, base::Field{.key = {}, .doc = {}});
   for (MapEntry& entry : scene.entries) tree.entries.push_back(std::move(entry));
-  return tree.with("definitions", Node::map().with("function_of_time", function_of_time()));
+  return tree.with("definitions",
+                   Node::map().with("function_of_time", function_of_time()).with("where", where_on_a_solid()));
 }
 
 std::string schema_text() { return to_json(schema_tree()); }

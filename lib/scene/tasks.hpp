@@ -8,6 +8,7 @@
 #include "base/describe.hpp"
 #include "scene/bodies.hpp"
 #include "scene/entries.hpp"
+#include "scene/probes.hpp"
 
 namespace muldi::scene {
 
@@ -94,6 +95,8 @@ struct RecordedPoint {
 struct Record {
   int every = 1;
   std::vector<RecordedPoint> points = {};
+  Named<RecordedFields> fields = {};  ///< by solid
+  Named<Probe> probes = {};
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit& visit) {
@@ -105,8 +108,11 @@ struct Record {
                 .need = optional},
           self.every);
     visit(Field{.key = "points", .doc = "points of bodies, `body.point`", .need = optional}, self.points);
-    visit(Later{.key = "fields", .doc = "fields of solids"});
-    visit(Later{.key = "probes", .doc = "distances between points of solids"});
+    visit(Field{.key = "fields",
+                .doc = "fields by solid: a list, or {fields, every}; without it no field is recorded",
+                .need = optional},
+          self.fields);
+    visit(Field{.key = "probes", .doc = "numbers and vectors over time by name", .need = optional}, self.probes);
   }
   friend bool operator==(const Record&, const Record&) = default;
 };

@@ -30,6 +30,13 @@ template <class T>
 requires requires(const T& value, FieldWriter& writer) { T::describe(value, writer); }
 Node to_node(const T& value);
 
+Node to_node(const Drive& value);
+Node to_node(const ProbePoint& value);
+template <class T>
+Node to_node(const std::optional<T>& value);
+template <class T, std::size_t n>
+Node to_node(const std::array<T, n>& values);
+
 Node to_node(double value) { return number(value); }
 Node to_node(int value) { return Node::scalar(std::to_string(value)); }
 Node to_node(const std::string& value) { return Node::scalar(value, true); }
@@ -39,6 +46,12 @@ Node to_node(const std::array<T, n>& values) {
   Node list = Node::sequence();
   for (const T& value : values) list.items.push_back(to_node(value));
   return list;
+}
+
+/// ~ where there is none: in lists.
+template <class T>
+Node to_node(const std::optional<T>& value) {
+  return value ? to_node(*value) : Node();
 }
 
 template <class T>
@@ -92,6 +105,19 @@ Node to_node(const JointMomentum& value) {
   return list;
 }
 
+Node to_node(const fem::Interval& value) { return to_node(std::array{value.low, value.high}); }
+Node to_node(const Where& value);
+Node to_node(const SolidMaterial& value);
+Node to_node(const ProbePoint& value) {
+  if (value.body) return Node::scalar(value.body->name + "." + value.point.name, true);
+  std::vector<std::string> numbers;
+  for (const double coordinate : value.at) numbers.push_back(base::number_text(coordinate));
+  return Node::scalar(value.solid->name + "@[" + base::joined(numbers) + "]", true);
+}
+Node to_node(const ElectrodeName& value) { return Node::scalar(value.solid.name + "." + value.name, true); }
+template <class... Components>
+Node to_node(const std::variant<Components...>& value);
+
 Node to_node(const base::TimeFunction& function);
 Node to_node(const Control& value);
 Node to_node(const Drive& value);
@@ -126,6 +152,9 @@ class FieldWriter {
   template <class T>
   void append(std::string_view key, const T& value) {
     map_.with(std::string(key), to_node(value));
+  }
+  void append(std::string_view key, const fem::Interval& value) {
+    if (value != fem::Interval{}) map_.with(std::string(key), to_node(value));
   }
   void append(std::string_view key, const std::string& value) {
     if (!value.empty()) map_.with(std::string(key), to_node(value));
@@ -166,6 +195,37 @@ Node to_node(const std::optional<Stops>& value) {
   Node map = Node::map();
   FieldWriter writer(map);
   describe_stops(Coordinate::slide, *value, writer);
+  return map;
+}
+
+template <class... Components>
+Node to_node(const std::variant<Components...>& value) {
+  return std::visit(
+      [](const auto& component) {
+        if constexpr (requires { component.named_by_field; }) return to_node(component);
+        return Node::map().with(std::string(component.name), to_node(component));
+      },
+      value);
+}
+
+Node to_node(const Where& value) {
+  if (std::holds_alternative<fem::SelectAll>(value.selector)) return word(fem::SelectAll::name);
+  const auto* face = std::get_if<fem::SelectFace>(&value.selector);
+  if (face != nullptr && *face == fem::SelectFace{.face = face->face} && face->face != fem::SelectAll::name) {
+    return word(face->face);
+  }
+  return std::visit(
+      [](const auto& selector) {
+        if constexpr (requires { selector.named_by_field; }) return to_node(selector);
+        return Node();
+      },
+      value.selector);
+}
+
+Node to_node(const SolidMaterial& value) {
+  if (value.parts.empty()) return to_node(value.whole);
+  Node map = Node::map();
+  for (const Entry<MaterialName>& part : value.parts) map.with(part.name, to_node(part.value));
   return map;
 }
 

@@ -26,13 +26,16 @@ Eigen::MatrixXd admissible_motions(const Eigen::MatrixXd& B, Eigen::Index n_v) {
 EquilibriumSolver::EquilibriumSolver(const model::Model& model, EquilibriumOptions options)
     : model_(model),
       manifold_(*model.manifold),
-      options_(options),
+      options_(std::move(options)),
+      parts_(model, model::Linearisation::rest, options_.substructures),
       frame_(manifold_.make_frame()),
       K_(*model.pattern),
-      q_(Eigen::VectorXd::Zero(manifold_.n_q())),
+      q_(Eigen::VectorXd::Zero(model.n_q())),
       zero_(q_),
+      force_(q_),
       bracket_(q_),
       r_(Eigen::VectorXd::Zero(manifold_.n_v())),
+      diagonal_(r_),
       gaps_(Eigen::VectorXd::Zero(manifold_.n_loop_rows())),
       g_(Eigen::VectorXd::Zero(manifold_.n_c())),
       scale_(manifold_.rate_scale()),
@@ -42,31 +45,55 @@ EquilibriumSolver::EquilibriumSolver(const model::Model& model, EquilibriumOptio
       dlambda_(gaps_) {
   forces_.force = q_;
   forces_.momentum = q_;
+  forces_.on_rates = r_;
+  if (parts_.empty()) return;
+  forces_.begin = forces_.end = dq_ = q_;
+  forces_.stage = y_ = dy_ = Eigen::VectorXd::Zero(model.n_y());
 }
 
 model::IntervalPoint EquilibriumSolver::point(const StaticState& state, std::span<const double> u) const {
   const std::span<const double> x(state.x.data(), static_cast<std::size_t>(state.x.size()));
-  return {.q0 = q_, .q1 = q_, .q = q_, .v = zero_, .u = u, .x0 = x, .x1 = x};
+  return {.q0 = q_, .q1 = q_, .q = q_, .v = zero_, .u = u, .x0 = x, .x1 = x, .y = &y_};
 }
 
 void EquilibriumSolver::evaluate(const StaticState& state, std::span<const double> u) {
   manifold_.configuration(state.x, q_);
+  if (!parts_.empty()) {
+    parts_.copy_slices(state.q, q_);
+    y_ = state.y;
+    parts_.place({.u = u, .u_end = u}, q_, y_);
+  }
   manifold_.update(state.x, q_, *frame_);
   manifold_.choose_loop_rows(*frame_);
   model_.forces(point(state, u), forces_);
+  force_ = forces_.force;
+  manifold_.add_forces_on_rates(*frame_, 1.0, forces_.on_rates, force_);
   // The largest force seen: at equilibrium the forces on a single unknown cancel, and their sum measures nothing.
-  terms_ = std::max(terms_, forces_.force.lpNorm<Eigen::Infinity>());
+  terms_ = std::max(terms_, force_.lpNorm<Eigen::Infinity>());
   bracket_ = forces_.force;
   manifold_.add_constraint_forces(q_, -1.0, state.multipliers, bracket_);
-  manifold_.project(*frame_, bracket_, r_);
+  parts_.keep_free(bracket_);
+  project_bracket();
   manifold_.constraints(q_, gaps_);
   g_ = loop_basis().transpose() * gaps_;
+}
+
+void EquilibriumSolver::project_bracket() {
+  manifold_.project(*frame_, bracket_, r_);
+  r_ += forces_.on_rates;
 }
 
 void EquilibriumSolver::linearise(const StaticState& state, std::span<const double> u) {
   evaluate(state, u);
   model_.tangent(point(state, u), model::TangentWeights::stiffness(), K_);
+  if (!parts_.empty()) {
+    singular_ = !parts_.factorise(point(state, u));
+    if (!singular_) parts_.eliminate(bracket_, forces_.stage, K_);
+    project_bracket();
+  }
   manifold_.project_tangent(*frame_, *frame_, K_, A_);
+  model_.rate_tangent(point(state, u), model::TangentWeights::stiffness(), diagonal_);
+  A_.diagonal() += diagonal_;
   manifold_.add_curvature(*frame_, bracket_, state.multipliers, A_);
   manifold_.project_constraints(*frame_, loop_basis(), B_);
 }
@@ -75,18 +102,26 @@ Eigen::VectorXd EquilibriumSolver::load_rate(std::span<const double> u, std::spa
   const StaticState at{.x = Eigen::VectorXd::Zero(0), .multipliers = {}};
   Eigen::VectorXd rate = Eigen::VectorXd::Zero(manifold_.n_q());
   Eigen::VectorXd one(manifold_.n_q());
+  Eigen::VectorXd on_rates = Eigen::VectorXd::Zero(manifold_.n_v());
+  Eigen::VectorXd projected(manifold_.n_v());
   for (std::size_t c = 0; c < du.size(); ++c) {
     if (du[c] == 0.0) continue;
     one.setZero();
-    for (const auto& term : model_.terms) term->add_control_force(point(at, u), static_cast<int>(c), one);
+    projected.setZero();
+    for (const auto& term : model_.terms) {
+      term->add_control_force(point(at, u), static_cast<int>(c), one);
+      term->add_control_force_on_rates(point(at, u), static_cast<int>(c), projected);
+    }
     rate += du[c] * one;
+    on_rates += du[c] * projected;
   }
-  Eigen::VectorXd projected(manifold_.n_v());
   manifold_.project(*frame_, rate, projected);
-  return projected;
+  return projected + on_rates;
 }
 
 Stability EquilibriumSolver::stability() const {
+  if (singular_) return Stability::free;
+  if (parts_.unstable_directions() > 0) return Stability::unstable;
   if (manifold_.n_v() == manifold_.n_c()) return Stability::stable;
   const Eigen::MatrixXd scaled = scale_.asDiagonal() * A_ * scale_.asDiagonal();
   const Eigen::MatrixXd N = admissible_motions(B_ * scale_.asDiagonal(), manifold_.n_v());
@@ -100,6 +135,30 @@ Stability EquilibriumSolver::stability() const {
 
 Eigen::VectorXd EquilibriumSolver::least_norm(const Eigen::VectorXd& multipliers) const {
   return loop_basis() * (loop_basis().transpose() * multipliers);
+}
+
+double EquilibriumSolver::increment_size() const {
+  double size = dw_.size() > 0 ? dw_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>() : 0.0;
+  if (parts_.empty()) return size;
+  const double of_parts = parts_.size_of(dq_, dy_);
+  return of_parts <= size ? size : of_parts;
+}
+
+void EquilibriumSolver::scale_increment(double factor) {
+  dw_ *= factor;
+  if (parts_.empty()) return;
+  dlambda_ *= factor;
+  dq_ *= factor;
+  dy_ *= factor;
+}
+
+void EquilibriumSolver::move(const StaticState& start, double factor, StaticState& trial) const {
+  manifold_.retract(start.x, factor * dw_, trial.x);
+  trial.multipliers = start.multipliers + factor * dlambda_;
+  if (parts_.empty()) return;
+  trial.q = start.q;
+  parts_.add_slices(factor, dq_, trial.q);
+  trial.y = start.y + factor * dy_;
 }
 
 void EquilibriumSolver::newton_increment() {
@@ -128,6 +187,30 @@ void EquilibriumSolver::newton_increment() {
   const Eigen::VectorXd solution = kkt.partialPivLu().solve(rhs);
   dw_ = scale_.cwiseProduct(solution.head(n_v));
   dlambda_ = loop_basis() * solution.tail(n_c);
+  if (parts_.empty()) return;
+  dq_.setZero();
+  manifold_.lift(*frame_, dw_, dq_);
+  parts_.complete(dq_, dy_);
+}
+
+double EquilibriumSolver::predict(StaticState& state, std::span<const double> u) {
+  evaluate(state, u);
+  parts_.eliminate(bracket_, forces_.stage, K_);
+  manifold_.project(*frame_, bracket_, r_);
+  newton_increment();
+  const double size = parts_.size_of(dq_, dy_);
+  if (!(size <= longest_increment)) return size;
+  StaticState moved = state;
+  move(state, 1.0, moved);
+  state = std::move(moved);
+  return size;
+}
+
+double EquilibriumSolver::distance(const StaticState& a, const StaticState& b) {
+  if (parts_.empty()) return 0.0;
+  dq_ = a.q - b.q;
+  dy_.setZero();
+  return parts_.size_of(dq_, dy_);
 }
 
 double EquilibriumSolver::line_search(const StaticState& start, StaticState& trial, std::span<const double> u,
@@ -135,12 +218,17 @@ double EquilibriumSolver::line_search(const StaticState& start, StaticState& tri
   const double begin = r_.dot(dw_);
   double factor = 1.0;
   for (int halving = 0; halving <= max_halvings; ++halving, factor *= 0.5) {
-    manifold_.retract(start.x, factor * dw_, trial.x);
-    trial.multipliers = start.multipliers + factor * dlambda_;
+    move(start, factor, trial);
     manifold_.configuration(trial.x, q_);
     inadmissible = model_.inadmissible(q_);
     if (!inadmissible.empty()) continue;
     evaluate(trial, u);
+    if (!(forces_.margin > 0.0)) {
+      inadmissible = model_.inadmissible_anywhere(q_);
+      if (inadmissible.empty()) inadmissible = "an element of a solid collapses";
+      continue;
+    }
+    if (!parts_.empty()) return factor;
     // On loops the multipliers change with the step, so that the work of the residual is no measure of progress there.
     if (manifold_.n_c() > 0 || std::abs(r_.dot(dw_)) <= line_search_goal * std::abs(begin)) return factor;
     if (terms_ * round_off_residual >= r_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>()) return factor;
@@ -156,20 +244,22 @@ EquilibriumReport EquilibriumSolver::solve(StaticState& state, std::span<const d
   manifold_.configuration(at.x, q_);
   report.inadmissible = model_.inadmissible(q_);
   if (!report.inadmissible.empty()) return report;
-  if (manifold_.n_v() == 0) {
+  if (manifold_.n_v() == 0 && parts_.empty()) {
     linearise(at, u);
     report.converged = true;
     return report;
   }
   for (report.iterations = 1; report.iterations <= options_.max_iterations; ++report.iterations) {
     linearise(at, u);
+    if (singular_) return report;
     newton_increment();
-    double size = dw_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>();
+    const double size = increment_size();
     if (!std::isfinite(size)) return report;
-    if (size > longest_increment) dw_ *= longest_increment / size;
+    if (size > longest_increment) scale_increment(longest_increment / size);
     if (line_search(at, trial, u, report.inadmissible) == 0.0) return report;
     std::swap(at, trial);
-    report.residual = terms_ > 0.0 ? r_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>() / terms_ : 0.0;
+    const double largest = std::max(r_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>(), parts_.largest_row(bracket_));
+    report.residual = terms_ > 0.0 ? largest / terms_ : 0.0;
     const bool stagnates = report.iterations > 3 && size > 0.5 * previous && report.residual < round_off_residual;
     if (size <= options_.tolerance || stagnates) {
       report.converged = true;

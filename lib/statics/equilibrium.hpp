@@ -1,8 +1,10 @@
 #pragma once
 /// Static equilibrium on the constraint manifold: Newton with regularisation, line search and a stability check.
 ///
-///     T(q)^T [ F(q, u) - G_c(q)^T lambda ] = 0,  g_c(q) = 0,  F = dL/dq + f at rest,
-/// with the tangent T^T (-F_q) T and the curvature of the manifold (numerics, 4.5).
+///     T(q)^T [ F(q, u) - G_c(q)^T lambda ] + Q(x, u) = 0,  g_c(q) = 0,  F = dL/dq + f at rest,
+/// with the tangent T^T (-F_q) T - Q_x and the curvature of the manifold (numerics, 4.5), which forces Q on the minimal
+/// rates do not see. Substructures are eliminated: they
+/// leave forces and a stiffness on the bodies, and their own stability is read off the signs of their pivots.
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <memory>
@@ -10,18 +12,22 @@
 #include <string>
 
 #include "model/model.hpp"
+#include "model/substructure_set.hpp"
 
 namespace muldi::statics {
 
 struct EquilibriumOptions {
   double tolerance = 1e-10;  ///< largest dimensionless Newton increment whose result is accepted
   int max_iterations = 50;
+  std::string substructures = "auto";  ///< solver of the substructures, as their make_solver takes it
 };
 
 /// A configuration at rest with the multipliers of the loops.
 struct StaticState {
   Eigen::VectorXd x;            ///< (n_x)
   Eigen::VectorXd multipliers;  ///< (n_loop_rows), of least norm
+  Eigen::VectorXd q = {};       ///< (n_q), of which the slices of substructures count; empty without substructures
+  Eigen::VectorXd y = {};       ///< stage unknowns (n_y)
 };
 
 enum class Stability {
@@ -53,39 +59,58 @@ class EquilibriumSolver {
   const Eigen::MatrixXd& loop_rows() const { return B_; }  ///< Z^T G T (n_c, n_v)
   const Eigen::MatrixXd& loop_basis() const { return manifold_.loop_basis(*frame_); }  ///< Z (n_loop_rows, n_c)
   const Eigen::VectorXd& configuration() const { return q_; }                          ///< (n_q)
-  const Eigen::VectorXd& force() const { return forces_.force; }                       ///< F (n_q)
+  const Eigen::VectorXd& stage() const { return y_; }                                  ///< (n_y)
+  /// F (n_q), with the forces on the minimal rates.
+  const Eigen::VectorXd& force() const { return force_; }
   const Eigen::VectorXd& scale() const { return scale_; }  ///< natural size of increments (n_v)
   /// T^T sum_c dF/du_c du_c (n_v) at the linearised state.
   Eigen::VectorXd load_rate(std::span<const double> u, std::span<const double> du);
   Stability stability() const;
+  /// For models with substructures, after linearise() at an equilibrium: moves `state` along the tangent to the
+  /// controls u; returns the largest increment of the substructures.
+  double predict(StaticState& state, std::span<const double> u);
+  /// Largest difference of the substructures' unknowns of two states, in natural sizes; 0 without substructures.
+  double distance(const StaticState& a, const StaticState& b);
   /// Multipliers of least norm with the same constraint force at the linearised state.
   Eigen::VectorXd least_norm(const Eigen::VectorXd& multipliers) const;
 
  private:
   model::IntervalPoint point(const StaticState& state, std::span<const double> u) const;
   void evaluate(const StaticState& state, std::span<const double> u);
+  /// r_ from bracket_ and the forces on the minimal rates.
+  void project_bracket();
   void newton_increment();
+  double increment_size() const;
+  void scale_increment(double factor);
+  void move(const StaticState& start, double factor, StaticState& trial) const;
   double line_search(const StaticState& start, StaticState& trial, std::span<const double> u,
                      std::string& inadmissible);
 
   const model::Model& model_;
   const model::Manifold& manifold_;
   EquilibriumOptions options_;
+  model::SubstructureSet parts_;
   std::unique_ptr<model::Frame> frame_;
   math::BlockMatrix K_;
   model::IntervalForces forces_;
   Eigen::VectorXd q_;
   Eigen::VectorXd zero_;
+  Eigen::VectorXd force_;
   Eigen::VectorXd bracket_;
   Eigen::VectorXd r_;
-  Eigen::VectorXd gaps_;  // of all loop rows
-  Eigen::VectorXd g_;     // Z^T gaps
+  Eigen::VectorXd diagonal_;  // derivatives of the forces on the minimal rates
+  Eigen::VectorXd gaps_;      // of all loop rows
+  Eigen::VectorXd g_;         // Z^T gaps
   Eigen::VectorXd scale_;
   Eigen::MatrixXd A_;
   Eigen::MatrixXd B_;
   Eigen::VectorXd dw_;
   Eigen::VectorXd dlambda_;
+  Eigen::VectorXd y_;
+  Eigen::VectorXd dq_;  // of the substructures
+  Eigen::VectorXd dy_;
   double terms_ = 0.0;
+  bool singular_ = false;  // the matrix of a substructure
 };
 
 }  // namespace muldi::statics

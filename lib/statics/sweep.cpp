@@ -13,6 +13,16 @@ constexpr double bracket_width = 1e-6;
 /// A corrector longer than the predictor (dimensionless) means a jump to another branch.
 constexpr double longest_correction = 1.0;
 constexpr double smallest_prediction = 1e-3;
+/// Substructures may leave their branch on longer predictions (in sizes of the part), and have left it where the
+/// corrector is a larger part of the predictor than this.
+constexpr double longest_prediction = 0.1;
+constexpr double largest_correction = 0.5;
+
+/// True if an equilibrium lies so far from the predicted one that it belongs to another branch.
+bool is_jump(double travelled, double predicted) {
+  return travelled - predicted > longest_correction * std::max(predicted, smallest_prediction) &&
+         travelled > 10.0 * smallest_prediction;
+}
 
 }  // namespace
 
@@ -21,8 +31,8 @@ Sweep::Sweep(const model::Model& model, std::vector<double> u_fixed, std::vector
     : model_(model),
       u_fixed_(std::move(u_fixed)),
       direction_(std::move(direction)),
-      options_(options),
-      solver_(model, options.equilibrium),
+      options_(std::move(options)),
+      solver_(model, options_.equilibrium),
       u_(u_fixed_.size()) {}
 
 void Sweep::controls_at(double load) {
@@ -40,6 +50,7 @@ void Sweep::record(const SweepCallbacks& callbacks, double load, const StaticSta
   callbacks.record({.load = load,
                     .state = state,
                     .q = solver_.configuration(),
+                    .y = solver_.stage(),
                     .force = solver_.force(),
                     .u = u_,
                     .report = report});
@@ -66,13 +77,38 @@ SweepResult Sweep::run(StaticState& state, const SweepCallbacks& callbacks) {
   return options_.continuation == Continuation::natural ? natural(state, callbacks) : arc_length(state, callbacks);
 }
 
+bool Sweep::follow(double load, double next, StaticState& state, EquilibriumReport& report) {
+  const double range = options_.to - options_.from;
+  const bool resolved = std::abs(next - load) <= bracket_width * std::abs(range);
+  Eigen::VectorXd moved(model_.manifold->n_v());
+  controls_at(load);
+  solver_.linearise(state, u_);
+  const Eigen::VectorXd tangent = tangent_at(Eigen::VectorXd());
+  const double predicted = std::abs((next - load) / range) * tangent.head(moved.size()).norm() /
+                           std::max(std::abs(tangent[moved.size()]), 1e-300);
+  const StaticState start = state;
+  double predicted_parts = 0.0;
+  if (!model_.substructures.empty()) {
+    controls_at(next);
+    predicted_parts = solver_.predict(state, u_);
+  }
+  if (predicted_parts > longest_prediction && !resolved) return false;
+  const StaticState guess = state;
+  report = solve_at(next, state);
+  model_.manifold->difference(start.x, state.x, moved);
+  const double travelled = moved.cwiseQuotient(solver_.scale()).norm();
+  const bool left =
+      solver_.distance(state, guess) > largest_correction * std::max(predicted_parts, smallest_prediction);
+  const bool jumped = !resolved && (is_jump(travelled, predicted) || left);
+  return report.converged && report.stability == Stability::stable && !jumped;
+}
+
 SweepResult Sweep::natural(StaticState& state, const SweepCallbacks& callbacks) {
   SweepResult result;
   EquilibriumReport report;
   if (!first_equilibrium(state, report, result)) return result;
   record(callbacks, options_.from, state, report);
   const double range = options_.to - options_.from;
-  Eigen::VectorXd moved(model_.manifold->n_v());
   double load = options_.from;
   double step = range / options_.steps;
   for (int k = 1; k <= options_.steps; ++k) {
@@ -84,19 +120,8 @@ SweepResult Sweep::natural(StaticState& state, const SweepCallbacks& callbacks) 
       }
       const bool last = std::abs(step) >= std::abs(goal - load);
       const double next = last ? goal : load + step;
-      controls_at(load);
-      solver_.linearise(state, u_);
-      const Eigen::VectorXd tangent = tangent_at(Eigen::VectorXd());
       StaticState trial = state;
-      const double predicted = std::abs((next - load) / range) * tangent.head(moved.size()).norm() /
-                               std::max(std::abs(tangent[moved.size()]), 1e-300);
-      report = solve_at(next, trial);
-      model_.manifold->difference(state.x, trial.x, moved);
-      const double travelled = moved.cwiseQuotient(solver_.scale()).norm();
-      const bool jumped = travelled - predicted > longest_correction * std::max(predicted, smallest_prediction) &&
-                          travelled > 10.0 * smallest_prediction &&
-                          std::abs(next - load) > bracket_width * std::abs(range);
-      if (report.converged && report.stability == Stability::stable && !jumped) {
+      if (follow(load, next, trial, report)) {
         state = trial;
         load = next;
         step = std::copysign(std::min(2.0 * std::abs(step), std::abs(range / options_.steps)), range);

@@ -23,6 +23,7 @@ struct SweepPoint {
   double load = 0.0;
   const StaticState& state;
   const Eigen::VectorXd& q;
+  const Eigen::VectorXd& y;
   const Eigen::VectorXd& force;  ///< F (n_q): minus the constraint forces
   std::span<const double> u;
   const EquilibriumReport& report;
@@ -51,6 +52,9 @@ class Sweep {
 
  private:
   SweepResult natural(StaticState& state, const SweepCallbacks& callbacks);
+  /// Moves an equilibrium at `load` to one at `next` on the same branch; false if there is none, it is not stable, or
+  /// it is too far from the predicted one to be of this branch.
+  bool follow(double load, double next, StaticState& state, EquilibriumReport& report);
   SweepResult arc_length(StaticState& state, const SweepCallbacks& callbacks);
   EquilibriumReport solve_at(double load, StaticState& state);
   bool first_equilibrium(StaticState& state, EquilibriumReport& report, SweepResult& result);

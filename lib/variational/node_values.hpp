@@ -4,6 +4,7 @@
 #include <span>
 
 #include "model/model.hpp"
+#include "model/substructure_set.hpp"
 #include "variational/state.hpp"
 
 namespace muldi::variational {
@@ -31,6 +32,8 @@ class NodeEvaluator {
 
   /// Multipliers of the loop rows that make the last momentum consistent (n_loop_rows), an impulse of least norm.
   const Eigen::VectorXd& loop_impulse() const { return lambda_; }
+  /// The same of the constraints inside substructures (n_y), see Substructure::add_multiplier_impulse.
+  const Eigen::VectorXd& stage_impulse() const { return dy_; }
 
   /// Electric enthalpy alone, for the work of control jumps.
   double electric(const State& state, std::span<const double> u);
@@ -39,8 +42,11 @@ class NodeEvaluator {
   void momentum_of(const Eigen::VectorXd& q, const Eigen::VectorXd& v, std::span<const double> u, Eigen::VectorXd& p);
 
  private:
+  bool solve_velocities(const State& state, NodeValues& out);
+
   const model::Model& model_;
   std::unique_ptr<model::ProjectedSolver> solver_;
+  model::SubstructureSet parts_;
   std::unique_ptr<model::Frame> frame_;
   math::BlockMatrix M_;
   model::IntervalForces forces_;
@@ -49,6 +55,9 @@ class NodeEvaluator {
   Eigen::VectorXd mu_;
   Eigen::VectorXd lambda_;
   Eigen::VectorXd zero_q_;
+  Eigen::VectorXd bracket_;
+  Eigen::VectorXd dy_;
+  Eigen::VectorXd zero_y_;
   std::vector<model::Energy> scratch_;
 };
 

@@ -16,6 +16,8 @@ std::string name_of(Status status) {
       return "loss_of_equilibrium";
     case Status::muscle_collapse:
       return "muscle_collapse";
+    case Status::inverted_element:
+      return "inverted_element";
     case Status::breakdown:
       return "breakdown";
     case Status::step_too_large:

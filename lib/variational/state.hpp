@@ -6,15 +6,28 @@
 
 namespace muldi::variational {
 
-/// Momentum form: configuration and unprojected momentum at the same node (numerics, 1.5).
+/// Where the factors of the substructures were made: with it a restart makes the same ones.
+struct FactorPoint {
+  bool valid = false;
+  bool first = false;  ///< in the first interval of the run
+  Eigen::VectorXd q0;  ///< (n_q)
+  Eigen::VectorXd q1;  ///< (n_q)
+  Eigen::VectorXd y;   ///< (n_y)
+};
+
+/// Momentum form: configuration and unprojected momentum at the same node (numerics, 1.5). `y`, `advance` and `factor`
+/// are empty in models without substructures.
 struct State {
   long step = 0;  ///< nodes passed since t = 0
   double t = 0.0;
-  Eigen::VectorXd x;            ///< coordinates of the manifold (n_x)
-  Eigen::VectorXd q;            ///< configuration (n_q), rebuilt from x
-  Eigen::VectorXd p;            ///< D2 L_d + f+ of the last interval (n_q); M v at t = 0
-  Eigen::VectorXd increment;    ///< last minimal increment (n_v), the predictor
-  Eigen::VectorXd multipliers;  ///< lambda of the last node (n_loop_rows), of least norm
+  Eigen::VectorXd x;             ///< coordinates of the manifold (n_x)
+  Eigen::VectorXd q;             ///< configuration (n_q), rebuilt from x
+  Eigen::VectorXd p;             ///< D2 L_d + f+ of the last interval (n_q); M v at t = 0
+  Eigen::VectorXd increment;     ///< last minimal increment (n_v), the predictor
+  Eigen::VectorXd multipliers;   ///< lambda of the last node (n_loop_rows), of least norm
+  Eigen::VectorXd y = {};        ///< stage unknowns of the last interval (n_y), the predictor
+  Eigen::VectorXd advance = {};  ///< last increment of the substructures' positions (n_q)
+  FactorPoint factor = {};
 };
 
 /// How a solver ended; the names are those of the result file (scene format, section 4).
@@ -25,6 +38,7 @@ enum class Status {
   no_convergence,
   loss_of_equilibrium,
   muscle_collapse,
+  inverted_element,
   breakdown,
   step_too_large,
   rank_change,

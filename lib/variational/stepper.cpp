@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace muldi::variational {
 namespace {
@@ -12,6 +13,12 @@ constexpr double longest_increment = 0.5;
 constexpr int max_halvings = 12;
 /// Relative residual below which increments may stop falling: round-off of badly conditioned systems.
 constexpr double round_off_residual = 1e-12;
+/// A kept factor is made anew where an iteration reduces the increment by less than this.
+constexpr double slow_rate = 0.4;
+/// Violation of the constraints inside substructures that one more iteration takes to round-off.
+constexpr double violation_goal = 1e-12;
+/// Part of a step by which positions are prescribed before its end: where a held control jumps, its old value counts.
+constexpr double before_end = 1e-9;
 
 }  // namespace
 
@@ -21,18 +28,28 @@ Stepper::Stepper(const model::Model& model, double dt, StepOptions options)
       dt_(dt),
       options_(std::move(options)),
       solver_(manifold_.make_solver(*model.pattern, options_.linear)),
+      parts_(model, model::Linearisation::step, options_.substructures),
       frame_n_(manifold_.make_frame()),
       frame_k_(manifold_.make_frame()),
       K_(*model.pattern),
-      scale_(manifold_.rate_scale()) {
+      scale_(manifold_.rate_scale()),
+      u_last_(model.controls.size()),
+      u_end_(model.controls.size()) {
   for (Eigen::VectorXd* in_q : {&forces_.force, &forces_.momentum, &q_, &q_mid_, &v_, &bracket_, &constraint_force_}) {
-    *in_q = Eigen::VectorXd::Zero(manifold_.n_q());
+    *in_q = Eigen::VectorXd::Zero(model.n_q());
   }
-  for (Eigen::VectorXd* in_v : {&r_, &dw_}) *in_v = Eigen::VectorXd::Zero(manifold_.n_v());
+  for (Eigen::VectorXd* in_v : {&r_, &dw_, &forces_.on_rates, &diagonal_})
+    *in_v = Eigen::VectorXd::Zero(manifold_.n_v());
   for (Eigen::VectorXd* in_c : {&g_, &mu_, &dmu_}) *in_c = Eigen::VectorXd::Zero(manifold_.n_c());
   for (Eigen::VectorXd* of_rows : {&gaps_, &lambda_}) *of_rows = Eigen::VectorXd::Zero(manifold_.n_loop_rows());
+  if (model.acts_at_ends()) forces_.begin = forces_.end = q_;
+  if (!parts_.empty()) {
+    for (Eigen::VectorXd* in_q : {&q_before_, &dq_, &rest_}) *in_q = q_;
+    for (Eigen::VectorXd* in_y : {&forces_.stage, &y_, &y_before_, &dy_}) *in_y = Eigen::VectorXd::Zero(model.n_y());
+  }
   x_ = Eigen::VectorXd::Zero(manifold_.n_x());
   x_before_ = x_;
+  mu_before_ = mu_;
   const Eigen::VectorXd reference = manifold_.reference();
   manifold_.configuration(reference, q_);
   manifold_.update(reference, q_, *frame_n_);
@@ -48,73 +65,164 @@ model::IntervalPoint Stepper::point(const State& state, std::span<const double> 
           .u = u,
           .dt = dt_,
           .x0 = {state.x.data(), size},
-          .x1 = {x_.data(), size}};
+          .x1 = {x_.data(), size},
+          .y = &y_,
+          .first = state.step == 0};
 }
 
 void Stepper::evaluate(const State& state, std::span<const double> u) {
-  manifold_.configuration(x_, q_);
+  parts_.place({.u = u, .u_end = u_end_}, q_, y_);
   q_mid_ = 0.5 * (state.q + q_);
   v_ = (q_ - state.q) / dt_;
   model_.forces(point(state, u), forces_);
 }
 
+void Stepper::project_bracket() {
+  manifold_.project(*frame_n_, bracket_, r_);
+  r_ += 0.5 * dt_ * forces_.on_rates;
+}
+
 double Stepper::residual_of(const State& state) {
   bracket_ = state.p + 0.5 * dt_ * forces_.force - forces_.momentum;
-  const double terms = std::max({state.p.lpNorm<Eigen::Infinity>(), 0.5 * dt_ * forces_.force.lpNorm<Eigen::Infinity>(),
-                                 forces_.momentum.lpNorm<Eigen::Infinity>()});
+  if (forces_.begin.size() > 0) bracket_ += forces_.begin;
+  const double terms =
+      std::max({state.p.lpNorm<Eigen::Infinity>(), 0.5 * dt_ * forces_.force.lpNorm<Eigen::Infinity>(),
+                0.5 * dt_ * forces_.on_rates.lpNorm<Eigen::Infinity>(), forces_.momentum.lpNorm<Eigen::Infinity>()});
   const Eigen::MatrixXd& Z = manifold_.loop_basis(*frame_n_);
   lambda_.noalias() = Z * mu_;
   manifold_.add_constraint_forces(state.q, -1.0, lambda_, bracket_);
-  manifold_.project(*frame_n_, bracket_, r_);
+  project_bracket();
   manifold_.constraints(q_, gaps_);
   g_.noalias() = Z.transpose() * gaps_;
-  return terms > 0.0 ? r_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>() / terms : 0.0;
+  parts_.keep_free(bracket_);
+  const double largest = std::max(r_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>(), parts_.largest_row(bracket_));
+  return terms > 0.0 ? largest / terms : 0.0;
 }
 
-void Stepper::damp_until_admissible(const State& state, StepReport& report) {
-  double factor = 1.0;
-  for (int halving = 0;; ++halving) {
-    manifold_.retract(x_before_, dw_, x_);
-    manifold_.configuration(x_, q_);
+void Stepper::move() {
+  manifold_.retract(x_before_, dw_, x_);
+  manifold_.configuration(x_, q_);
+  mu_ = mu_before_ + dmu_;
+  if (parts_.empty()) return;
+  parts_.copy_slices(q_before_, q_);
+  parts_.add_slices(1.0, dq_, q_);
+  y_ = y_before_ + dy_;
+}
+
+void Stepper::scale_increment(double factor) {
+  dw_ *= factor;
+  dmu_ *= factor;
+  if (parts_.empty()) return;
+  dq_ *= factor;
+  dy_ *= factor;
+}
+
+void Stepper::apply_increment(const State& state, StepReport& report) {
+  x_before_ = x_;
+  mu_before_ = mu_;
+  if (!parts_.empty()) {
+    q_before_ = q_;
+    y_before_ = y_;
+  }
+  for (halvings_ = 0;; ++halvings_) {
+    move();
     q_mid_ = 0.5 * (state.q + q_);
     report.sentence = model_.inadmissible(q_mid_);
     if (report.sentence.empty()) report.sentence = model_.inadmissible(q_);
-    if (report.sentence.empty() || halving == max_halvings) break;
-    dw_ *= 0.5;
-    factor *= 0.5;
+    if (report.sentence.empty() || halvings_ == max_halvings) return;
+    scale_increment(0.5);
   }
-  mu_ += factor * dmu_;
 }
 
-bool Stepper::newton(const State& state, std::span<const double> u, StepReport& report) {
-  double previous = 0.0;
-  for (int iteration = 1; iteration <= options_.max_iterations; ++iteration) {
-    evaluate(state, u);
-    report.residual = residual_of(state);
-    ++report.iterations;
+bool Stepper::retreat(StepReport& report) {
+  if (++halvings_ > max_halvings) {
+    report.sentence = model_.inadmissible_anywhere(q_mid_);
+    if (report.sentence.empty()) report.sentence = model_.inadmissible_anywhere(q_);
+    if (report.sentence.empty()) report.sentence = "an element of a solid collapses";
+    return false;
+  }
+  scale_increment(0.5);
+  move();
+  return true;
+}
+
+bool Stepper::factorise_parts(const model::IntervalPoint& at, StepReport& report) {
+  wants_factor_ = false;
+  ++report.factorisations;
+  factor_.valid = true;
+  factor_.first = at.first;
+  factor_.q0 = at.q0;
+  factor_.q1 = at.q1;
+  factor_.y = y_;
+  if (parts_.factorise(at)) return true;
+  report.sentence = "the matrix of a solid is singular";
+  return false;
+}
+
+double Stepper::solve(const State& state, std::span<const double> u, StepReport& report) {
+  constexpr double failed = std::numeric_limits<double>::quiet_NaN();
+  const model::IntervalPoint at = point(state, u);
+  if (manifold_.n_v() > 0) {
     manifold_.update(x_, q_, *frame_k_);
-    model_.tangent(point(state, u), model::TangentWeights::step(dt_), K_);
-    ++report.factorisations;
-    if (!solver_->factorise(*frame_n_, *frame_k_, K_)) {
+    model_.tangent(at, model::TangentWeights::step(dt_), K_);
+    model_.rate_tangent(at, model::TangentWeights::step(dt_), diagonal_);
+  }
+  if (!parts_.empty()) {
+    if ((wants_factor_ || !parts_.factorised()) && !factorise_parts(at, report)) return failed;
+    parts_.eliminate(bracket_, forces_.stage, K_);
+    project_bracket();
+  }
+  if (manifold_.n_v() > 0) {
+    if (parts_.empty()) ++report.factorisations;
+    if (!solver_->factorise(*frame_n_, *frame_k_, K_, diagonal_)) {
       report.sentence = "the Newton matrix is singular";
-      return false;
+      return failed;
     }
     g_ = -g_;
     solver_->solve(r_, g_, dw_, dmu_);
-    double size = dw_.size() > 0 ? dw_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>() : 0.0;
-    if (!std::isfinite(size)) {
-      report.sentence = "the Newton increment is not finite";
-      return false;
+  }
+  double size = dw_.size() > 0 ? dw_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>() : 0.0;
+  if (!parts_.empty()) {
+    dq_.setZero();
+    manifold_.lift(*frame_k_, dw_, dq_);
+    parts_.complete(dq_, dy_);
+    const double of_parts = parts_.size_of(dq_, dy_);
+    if (!(of_parts <= size)) size = of_parts;
+  }
+  if (!std::isfinite(size)) report.sentence = "the Newton increment is not finite";
+  return size;
+}
+
+bool Stepper::newton(const State& state, std::span<const double> u, bool keep_factors, StepReport& report) {
+  double previous = 0.0;
+  int since_factor = 0;
+  halvings_ = max_halvings;
+  for (int iteration = 1; iteration <= options_.max_iterations; ++iteration) {
+    evaluate(state, u);
+    while (!(forces_.margin > 0.0)) {
+      if (!retreat(report)) return false;
+      evaluate(state, u);
     }
-    if (size > longest_increment) {
-      dw_ *= longest_increment / size;
-      dmu_ *= longest_increment / size;
-    }
-    x_before_ = x_;
-    damp_until_admissible(state, report);
-    if (!report.sentence.empty()) return false;
+    report.residual = residual_of(state);
+    ++report.iterations;
+    const int factorisations = report.factorisations;
+    wants_factor_ |= !keep_factors;
+    const double size = solve(state, u, report);
+    if (!std::isfinite(size)) return false;
+    since_factor = report.factorisations > factorisations ? 1 : since_factor + 1;
     const bool stagnates = iteration > 3 && size > 0.5 * previous && report.residual < round_off_residual;
-    if (size <= options_.tolerance || stagnates) return true;
+    const bool slow = since_factor > 1 && size > slow_rate * previous && size > options_.tolerance;
+    if (!parts_.empty() && slow && !stagnates) {
+      wants_factor_ = true;
+      if (size > previous) {
+        report.sentence = "the increments grow";
+        return false;
+      }
+    }
+    if (size > longest_increment) scale_increment(longest_increment / size);
+    apply_increment(state, report);
+    if (!report.sentence.empty()) return false;
+    if ((size <= options_.tolerance && forces_.violation <= violation_goal) || stagnates) return true;
     previous = size;
   }
   report.sentence = "no convergence in " + std::to_string(options_.max_iterations) + " Newton iterations";
@@ -137,25 +245,76 @@ bool Stepper::choose_loop_rows(StepReport& report) {
   return false;
 }
 
+void Stepper::start_at(const State& state, bool extrapolate, std::span<const double> u) {
+  if (extrapolate) {
+    manifold_.retract(state.x, state.increment, x_);
+    mu_.noalias() =
+        (state.step == 0 ? 0.5 * dt_ : dt_) * manifold_.loop_basis(*frame_n_).transpose() * state.multipliers;
+  } else {
+    x_ = state.x;
+    mu_.setZero();
+  }
+  manifold_.configuration(x_, q_);
+  if (parts_.empty()) return;
+  parts_.copy_slices(state.q, q_);
+  if (extrapolate) parts_.add_slices(1.0, state.advance, q_);
+  y_ = state.y;
+  if (parts_.moves()) model_.evaluate_controls(state.t + (1.0 - before_end) * dt_, u_end_);
+  parts_.place({.u = u, .u_end = u_end_}, q_, y_);
+  // Where controls change the potentials jump with them: they are settled before the first matrix is made.
+  if (state.step > 0) model_.evaluate_controls(state.t - 0.5 * dt_, u_last_);
+  if (state.step > 0 && std::equal(u.begin(), u.end(), u_last_.begin())) return;
+  q_mid_ = 0.5 * (state.q + q_);
+  v_ = (q_ - state.q) / dt_;
+  parts_.settle_stage(point(state, u), y_);
+}
+
+void Stepper::restore_factors(const State& state, std::span<const double> u) {
+  if (parts_.empty() || parts_.factorised() || !state.factor.valid) return;
+  factor_ = state.factor;
+  y_ = factor_.y;
+  q_mid_ = 0.5 * (factor_.q0 + factor_.q1);
+  v_ = (factor_.q1 - factor_.q0) / dt_;
+  const model::IntervalPoint at{
+      .q0 = factor_.q0, .q1 = factor_.q1, .q = q_mid_, .v = v_, .u = u, .dt = dt_, .y = &y_, .first = factor_.first};
+  wants_factor_ = !parts_.factorise(at);
+}
+
+bool Stepper::attempt(const State& state, std::span<const double> u, Attempt how, StepReport& report) {
+  report.sentence.clear();
+  start_at(state, how.extrapolate, u);
+  if (how.extrapolate && !model_.inadmissible(q_).empty()) return false;
+  return newton(state, u, how.keep_factors, report);
+}
+
+void Stepper::blame(StepReport& report) const {
+  std::string why = model_.inadmissible(q_mid_);
+  if (why.empty()) why = model_.inadmissible(q_);
+  report.status = why.empty() ? Status::no_convergence : Status::muscle_collapse;
+  if (!why.empty() || parts_.empty()) return;
+  why = model_.inadmissible_anywhere(q_mid_);
+  if (why.empty()) why = model_.inadmissible_anywhere(q_);
+  if (why.empty()) return;
+  report.status = Status::inverted_element;
+  report.sentence = why;
+}
+
 StepReport Stepper::advance(State& state, std::span<const double> u) {
   StepReport report;
   manifold_.update(state.x, state.q, *frame_n_);
   if (!choose_loop_rows(report)) return report;
-  const double weight = state.step == 0 ? 0.5 * dt_ : dt_;
-  manifold_.retract(state.x, state.increment, x_);
-  mu_.noalias() = weight * manifold_.loop_basis(*frame_n_).transpose() * state.multipliers;
-  manifold_.configuration(x_, q_);
-  bool converged = model_.inadmissible(q_).empty() && newton(state, u, report);
-  if (!converged) {
-    // The predictor may be far off after a sudden change of the controls: start once more from the last node.
-    report.sentence.clear();
-    x_ = state.x;
-    mu_.setZero();
-    converged = newton(state, u, report);
+  restore_factors(state, u);
+  bool converged = attempt(state, u, {.extrapolate = true, .keep_factors = true}, report);
+  if (!converged && !parts_.empty()) {
+    wants_factor_ = true;
+    converged = attempt(state, u, {.extrapolate = true, .keep_factors = true}, report) ||
+                attempt(state, u, {.extrapolate = true, .keep_factors = false}, report);
   }
+  // The predictor may be far off after a sudden change of the controls: start once more from the last node.
+  if (!converged) converged = attempt(state, u, {.extrapolate = false, .keep_factors = false}, report);
   if (!converged) {
-    report.status = model_.inadmissible(q_).empty() && model_.inadmissible(q_mid_).empty() ? Status::no_convergence
-                                                                                           : Status::muscle_collapse;
+    wants_factor_ = true;
+    blame(report);
     return report;
   }
   finish(state, u, report);
@@ -163,11 +322,19 @@ StepReport Stepper::advance(State& state, std::span<const double> u) {
 }
 
 void Stepper::carry_residual() {
-  g_.setZero();
-  solver_->solve(r_, g_, dw_, dmu_);
-  v_.setZero();
-  manifold_.lift(*frame_k_, dw_, v_);
-  K_.multiply(v_, bracket_);
+  if (!parts_.empty()) rest_ = bracket_;
+  if (manifold_.n_v() > 0) {
+    g_.setZero();
+    solver_->solve(r_, g_, dw_, dmu_);
+    v_.setZero();
+    manifold_.lift(*frame_k_, dw_, v_);
+    K_.multiply(v_, bracket_);
+    r_ = diagonal_.cwiseProduct(dw_);
+    manifold_.add_forces_on_rates(*frame_k_, 1.0, r_, bracket_);
+  } else {
+    bracket_.setZero();
+  }
+  parts_.copy_slices(rest_, bracket_);
 }
 
 void Stepper::finish(State& state, std::span<const double> u, StepReport& report) {
@@ -186,11 +353,24 @@ void Stepper::finish(State& state, std::span<const double> u, StepReport& report
   report.residual = residual_of(state);
   const double weight = state.step == 0 ? 0.5 * dt_ : dt_;
   constraint_force_ = -(state.p + 0.5 * dt_ * forces_.force - forces_.momentum) / weight;
+  if (forces_.begin.size() > 0) constraint_force_ -= forces_.begin / weight;
+  manifold_.add_forces_on_rates(*frame_n_, -0.5 * dt_ / weight, forces_.on_rates, constraint_force_);
+  report.violation = forces_.violation;
   report.work = model_.work(point(state, u));
   manifold_.difference(state.x, x_, state.increment);
   state.multipliers = lambda_ / weight;
   carry_residual();
   state.p = forces_.momentum + 0.5 * dt_ * forces_.force + bracket_;
+  if (!forces_.on_rates.isZero(0.0)) {
+    manifold_.update(x_, q_, *frame_k_);
+    manifold_.add_forces_on_rates(*frame_k_, 0.5 * dt_, forces_.on_rates, state.p);
+  }
+  if (forces_.end.size() > 0) state.p += forces_.end;
+  if (!parts_.empty()) {
+    state.advance = q_ - state.q;
+    state.y = y_;
+    if (report.factorisations > 0 || !state.factor.valid) state.factor = factor_;
+  }
   state.x = x_;
   state.q = q_;
   ++state.step;

@@ -53,7 +53,7 @@ LoopResult TimeLoop::run(State& state, Ledger& ledger, StepReport& last, const L
       result.sentence = report.sentence;
       break;
     }
-    if (recorded) record(callbacks, before_, ledger, last, {stepper_.constraint_force(), state.multipliers});
+    if (recorded) record(callbacks, before_, ledger, last, {stepper_.constraint_force(), state.multipliers, state.y});
     last = report;
     ledger.dissipated += report.work.dissipated;
     ledger.external += report.work.external;
@@ -87,21 +87,29 @@ void TimeLoop::record(const LoopCallbacks& callbacks, const State& state, const 
                     .ledger = ledger,
                     .constraint_force = reactions.force,
                     .multipliers = reactions.multipliers,
+                    .y_after = reactions.stage,
                     .u = u_before_,
-                    .report = last});
+                    .report = last,
+                    .last = reactions.last});
 }
 
 void TimeLoop::record_end(const LoopCallbacks& callbacks, const State& state, Ledger& ledger, const StepReport& last) {
   // At the last node there is no following step. The reactions are those that make its momentum consistent with the
   // constraints: p_N - (dt/2) G^T lambda_N = M v_N.
   controls_of(state);
+  // Before the evaluation, which may leave traces in the memory of the substructures.
+  if (callbacks.checkpoint) callbacks.checkpoint(state, ledger, last);
   if (!nodes_.evaluate(state, u_before_, u_, values_)) return;
   if (state.step == 0) ledger.initial_total = values_.total.kinetic + values_.total.potential();
-  if (callbacks.checkpoint) callbacks.checkpoint(state, ledger, last);
   const double half = 0.5 * options_.dt;
-  end_force_ = (values_.momentum - state.p) / half;
+  end_force_ = values_.momentum - state.p;
+  for (const auto& part : model_.substructures) {
+    part->add_multiplier_impulse(state.q, nodes_.stage_impulse(), end_force_);
+  }
+  end_force_ /= half;
   end_multipliers_ = nodes_.loop_impulse() / half;
-  record(callbacks, state, ledger, last, {end_force_, end_multipliers_});
+  end_stage_ = nodes_.stage_impulse() / half;
+  record(callbacks, state, ledger, last, {end_force_, end_multipliers_, end_stage_, true});
 }
 
 }  // namespace muldi::variational

@@ -33,8 +33,10 @@ struct NodeRecord {
   const Ledger& ledger;
   const Eigen::VectorXd& constraint_force;  ///< -G^T lambda (n_q)
   const Eigen::VectorXd& multipliers;       ///< (n_loop_rows)
+  const Eigen::VectorXd& y_after;           ///< stage unknowns of the step that follows (n_y)
   std::span<const double> u;                ///< of the interval that ends here (of the first one at t = 0)
   const StepReport& report;                 ///< of the step that ends here
+  bool last = false;                        ///< no step follows
 };
 
 struct LoopOptions {
@@ -73,6 +75,8 @@ class TimeLoop {
   struct Reactions {
     const Eigen::VectorXd& force;
     const Eigen::VectorXd& multipliers;
+    const Eigen::VectorXd& stage;
+    bool last = false;
   };
   void record(const LoopCallbacks& callbacks, const State& state, const Ledger& ledger, const StepReport& last,
               const Reactions& reactions);
@@ -88,6 +92,7 @@ class TimeLoop {
   std::vector<double> u_;
   Eigen::VectorXd end_force_;
   Eigen::VectorXd end_multipliers_;
+  Eigen::VectorXd end_stage_;
 };
 
 }  // namespace muldi::variational

@@ -1,5 +1,7 @@
 #include "support/rigid_system.hpp"
 
+#include <algorithm>
+
 #include "variational/node_values.hpp"
 
 namespace muldi::test {
@@ -11,27 +13,34 @@ using Eigen::VectorXd;
 
 model::LinearPoint point_of(const End& end) { return multibody::body_point(end.body, end.local); }
 
-multibody::JointForces joint_forces_of(const RigidSystem& system, const multibody::KinematicTree& tree) {
-  std::vector<multibody::JointForce> forces;
+void add_joint_forces(const RigidSystem& system, const multibody::KinematicTree& tree, model::Model& model) {
+  std::vector<multibody::TreeJointForce> forces;
+  std::vector<multibody::CutJointForce> cut_forces;
   for (const CoordinateForce& force : system.joint_forces) {
     const multibody::Joint& joint = tree.joints[static_cast<std::size_t>(force.joint)];
-    int x_index = -1;
-    for (const multibody::TreeLink& link : tree.links) {
-      if (link.joint != force.joint) continue;
-      x_index = link.first_coordinate;
-      for (std::size_t k = 0; k < force.motion; ++k) x_index += joint.pattern.motions[k].n_coordinates();
+    const multibody::JointForce law{.part = "joints/" + joint.name,
+                                    .stiffness = force.stiffness,
+                                    .rest = force.rest,
+                                    .damping = force.damping,
+                                    .stops = force.stops,
+                                    .control = force.control,
+                                    .control_factor = force.control_factor,
+                                    .constant = force.constant};
+    const auto link = std::find_if(tree.links.begin(), tree.links.end(),
+                                   [&](const multibody::TreeLink& of) { return of.joint == force.joint; });
+    if (link == tree.links.end()) {
+      cut_forces.push_back({law, {joint, joint.pattern.motions[force.motion]}});
+      continue;
     }
-    forces.push_back({.part = "joints/" + joint.name,
-                      .coordinate = {joint, joint.pattern.motions[force.motion], x_index},
-                      .stiffness = force.stiffness,
-                      .rest = force.rest,
-                      .damping = force.damping,
-                      .stops = force.stops,
-                      .control = force.control,
-                      .control_factor = force.control_factor,
-                      .constant = force.constant});
+    multibody::TreeJointForce in_tree{law, link->first_coordinate, link->first_rate};
+    for (std::size_t k = 0; k < force.motion; ++k) {
+      in_tree.coordinate += joint.pattern.motions[k].n_coordinates();
+      in_tree.rate += joint.pattern.motions[k].n_rates();
+    }
+    forces.push_back(in_tree);
   }
-  return multibody::JointForces(std::move(forces));
+  if (!forces.empty()) model.terms.push_back(std::make_unique<multibody::JointForces>(std::move(forces)));
+  if (!cut_forces.empty()) model.terms.push_back(std::make_unique<multibody::CutJointForces>(std::move(cut_forces)));
 }
 
 template <class Element>
@@ -112,9 +121,7 @@ std::unique_ptr<model::Model> make_model(const RigidSystem& system) {
   if (system.n_bodies() > 0) {
     model->terms.push_back(std::make_unique<multibody::RigidBodies>(system.bodies, system.gravity));
   }
-  if (!system.joint_forces.empty()) {
-    model->terms.push_back(std::make_unique<multibody::JointForces>(joint_forces_of(system, tree)));
-  }
+  add_joint_forces(system, tree, *model);
   if (!system.loads.empty()) model->terms.push_back(std::make_unique<multibody::Loads>(system.loads));
   add_elements(system.muscles, system.gravity, *model);
   add_elements(system.springs, system.gravity, *model);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "model/model.hpp"
-#include "multibody/joint_forces.hpp"
+#include "multibody/cut_joint_forces.hpp"
 #include "multibody/loads.hpp"
 #include "multibody/rigid_body.hpp"
 #include "multibody/tree_manifold.hpp"
@@ -77,7 +77,8 @@ struct RigidSystem {
   RigidSystem moved(const multibody::Pose& motion) const;
 };
 
-/// The model of a system: bodies, joint forces, loads, muscles, springs, actuators, in this order.
+/// The model of a system: bodies, forces of tree joints, of cut joints, loads, muscles, springs, actuators, in this
+/// order.
 std::unique_ptr<model::Model> make_model(const RigidSystem& system);
 const multibody::TreeManifold& manifold_of(const model::Model& model);
 

@@ -23,6 +23,7 @@ model::NodeView view_of(const variational::NodeRecord& node) {
           .v = node.values.v,
           .constraint_force = node.constraint_force,
           .multipliers = node.multipliers,
+          .y = node.state.y,
           .u = node.u};
 }
 

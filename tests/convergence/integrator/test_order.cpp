@@ -87,5 +87,12 @@ TEST(Order, IsTwoWithSpringsAndDampersInTheJoint) {
   expect_order_two(system, {.dt = 8.0, .steps = 50});
 }
 
+TEST(Order, IsTwoWithSpringsAndDampersInAllJointsOfALoop) {
+  // Those of the tree act on coordinates, that of the cut joint on the directors.
+  test::RigidSystem system = test::four_bar({}, test::earth_gravity);
+  for (int j = 0; j < 4; ++j) system.joint_forces.push_back({.joint = j, .stiffness = 5.0, .damping = 50.0});
+  expect_order_two(system, {.dt = 1.0, .steps = 100});
+}
+
 }  // namespace
 }  // namespace muldi::variational

@@ -86,14 +86,13 @@ std::vector<Case> cases() {
 TEST(JointCoordinate, ValueGradientAndHessianAreThoseOfTheDefinition) {
   std::mt19937 random(61);
   for (const Case& at : cases()) {
-    const JointCoordinate coordinate_of(at.joint, at.motion, -1);
+    const JointCoordinate coordinate_of(at.joint, at.motion);
     const Jet expected = coordinate(at.joint, at.motion, at.q);
-    ASSERT_NEAR(coordinate_of.value(at.q, {}, {}), expected.value, 1e-12 * (1.0 + std::abs(expected.value)));
+    ASSERT_NEAR(coordinate_of.value(at.q), expected.value, 1e-12 * (1.0 + std::abs(expected.value)));
     VectorXd gradient = VectorXd::Zero(24);
     coordinate_of.add_gradient(at.q, 1.0, gradient);
-    JointCoordinate::LocalVector local_gradient;
-    JointCoordinate::LocalMatrix local_hessian;
-    coordinate_of.derivatives(at.q, local_gradient, local_hessian);
+    const JointCoordinate::LocalVector local_gradient = coordinate_of.gradient(at.q);
+    const JointCoordinate::LocalMatrix local_hessian = coordinate_of.hessian(at.q);
     VectorXd scattered = VectorXd::Zero(24);
     MatrixXd hessian = MatrixXd::Zero(24, 24);
     const auto nodes = coordinate_of.nodes();

@@ -71,8 +71,29 @@ TEST(StaticTangent, OfTreesWithSpringsLoadsAndJointSprings) {
 
 TEST(StaticTangent, OfALoopWithItsMultipliers) {
   std::mt19937 random(91);
-  const auto model = test::make_model(test::four_bar({}, 0.01));
+  test::RigidSystem system = test::four_bar({}, 0.01);
+  for (int j = 0; j < 4; ++j)
+    system.joint_forces.push_back({.joint = j, .stiffness = 5.0, .rest = 0.1, .constant = 2.0});
+  const auto model = test::make_model(system);
   expect_tangent(*model, {VectorXd{{0.1, -0.2, 0.3}}, VectorXd{{0.7, -1.1, 0.4, 0.9, -0.3}}}, {});
+}
+
+TEST(StaticTangent, LoadRateOfDrivesIsTheSlopeByTheControls) {
+  // In the joints of the tree and in the one that closes the loop.
+  test::RigidSystem system = test::four_bar({}, 0.01);
+  for (int j = 0; j < 4; ++j) {
+    system.joint_forces.push_back({.joint = j, .control = j % 2, .control_factor = 1.0 + j});
+  }
+  system.controls.assign(2, {.name = "u", .unit = base::dimension::torque, .function = 0.0});
+  const auto model = test::make_model(system);
+  EquilibriumSolver solver(*model, {});
+  const StaticState state{VectorXd{{0.1, -0.2, 0.3}}, VectorXd{{0.7, -1.1, 0.4, 0.9, -0.3}}};
+  solver.linearise(state, std::vector{0.3, 0.5});
+  const VectorXd before = solver.residual();
+  const VectorXd rate = solver.load_rate(std::vector{0.3, 0.5}, std::vector{2.0, -1.0});
+  solver.linearise(state, std::vector{2.3, -0.5});
+  EXPECT_GT(rate.norm(), 1.0);
+  EXPECT_LT((rate - (solver.residual() - before)).norm(), 1e-13 * rate.norm());  // linear in the drives
 }
 
 TEST(StaticTangent, LoadRateIsTheSlopeByTheControls) {

@@ -13,7 +13,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Four bodies on a universal, a revolute and a spherical joint, springs between points off the joints.
+/// Four bodies on a universal, a revolute and a spherical joint, springs between points off the joints, springs and a
+/// damper in the joints.
 test::RigidSystem free_tree() {
   test::RigidSystem system;
   std::mt19937 random(7);
@@ -33,6 +34,9 @@ test::RigidSystem free_tree() {
   spring(2, 3);
   spring(1, 3);
   spring(0, 1);
+  system.joint_forces = {{.joint = 0, .motion = 0, .stiffness = 30.0, .rest = 0.3},
+                         {.joint = 0, .motion = 1, .stiffness = 20.0, .damping = 5.0},
+                         {.joint = 1, .stiffness = 50.0, .stops = {.lower = -0.2, .upper = 0.2, .stiffness = 40.0}}};
   return system;
 }
 

@@ -53,6 +53,12 @@ TEST(Reversal, BringsTheDoublePendulumBackFromRegularMotion) {
   expect_return(test::double_pendulum(), Eigen::Vector2d(-70.0 * test::degree, 0.0), 5.0);
 }
 
+TEST(Reversal, BringsAPendulumWithAJointSpringAndADriveBack) {
+  test::RigidSystem system = test::pendulum();
+  system.joint_forces.push_back({.joint = 0, .stiffness = 20.0, .rest = 0.5, .constant = 3.0});
+  expect_return(system, Eigen::VectorXd::Zero(1), 10.0);
+}
+
 TEST(Reversal, BringsTheUndampedMuscleJointBack) {
   expect_return(test::undamped(test::muscle_joint(3e4)), Eigen::VectorXd::Zero(1), 2.0);
 }

@@ -1,8 +1,6 @@
 /// Springs, dampers, drives and stops on joint coordinates.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "multibody/registry.hpp"
 #include "support/systems.hpp"
 #include "support/trajectory.hpp"
@@ -15,9 +13,7 @@ using Eigen::VectorXd;
 
 /// The law of one force, whatever its joint.
 JointForce law(const test::CoordinateForce& of) {
-  static const test::RigidSystem system = test::pendulum();
   return {.part = "joints/j",
-          .coordinate = {system.joints[0], Revolute::pattern.motions[0], 0},
           .stiffness = of.stiffness,
           .rest = of.rest,
           .damping = of.damping,
@@ -65,9 +61,10 @@ TEST(JointForces, SpringForceIsMinusTheSlopeOfTheEnergyOverManyTurns) {
     model->energies({.x = {x.data(), 1}, .q = q, .v = v, .u = {}}, energy);
     EXPECT_NEAR(energy[1].elastic, (angle - 0.5) * (angle - 0.5), 1e-11);
     model::IntervalForces out{VectorXd(12), VectorXd(12)};
+    out.on_rates = VectorXd(1);
     model->forces({.q0 = q, .q1 = q, .q = q, .v = v, .u = {}, .x0 = {x.data(), 1}, .x1 = {x.data(), 1}}, out);
-    const double torque = (test::dense_null_space(test::manifold_of(*model), x).transpose() * out.force)[0];
-    EXPECT_NEAR(torque, -2.0 * (angle - 0.5), 1e-11);
+    EXPECT_NEAR(out.on_rates[0], -2.0 * (angle - 0.5), 1e-12);
+    EXPECT_EQ(out.force.norm(), 0.0);
   }
 }
 
@@ -79,21 +76,59 @@ TEST(JointForces, ShareTheirPartOfOneJoint) {
             (std::vector<std::string>{"bodies/body0", "bodies/body1", "joints/joint1", "joints/joint0"}));
 }
 
-TEST(JointForces, WorkOnTheAnchorIsExactOverAnInterval) {
-  // One revolute pendulum: the torque does work torque * angle for the angle of the midpoint formula.
+TEST(JointForces, DoTheWorkOfTheAngleThatAnIntervalTurns) {
   test::RigidSystem system = test::pendulum(0.0);
   system.joint_forces.push_back({.damping = 3.0, .constant = 5.0});
   const auto model = test::make_model(system);
-  const VectorXd q0 = test::configuration_at(*model->manifold, VectorXd::Constant(1, 0.3));
-  const VectorXd q1 = test::configuration_at(*model->manifold, VectorXd::Constant(1, 0.32));
+  const VectorXd x0 = VectorXd::Constant(1, 0.3);
+  const VectorXd x1 = VectorXd::Constant(1, 0.32);
+  const VectorXd q0 = test::configuration_at(*model->manifold, x0);
+  const VectorXd q1 = test::configuration_at(*model->manifold, x1);
   const double dt = 0.1;
   const VectorXd v = (q1 - q0) / dt;
   const VectorXd q = 0.5 * (q0 + q1);
-  // atan2 at the midpoint directors has the rate 2 tan(angle/2)/dt.
-  const double rate = 2.0 * std::tan(0.01) / dt;
-  const model::IntervalWork work = model->work({.q0 = q0, .q1 = q1, .q = q, .v = v, .u = {}, .dt = dt});
-  EXPECT_NEAR(work.dissipated, dt * 3.0 * rate * rate, 1e-14);
-  EXPECT_NEAR(work.external, dt * 5.0 * rate, 1e-14);
+  const model::IntervalWork work =
+      model->work({.q0 = q0, .q1 = q1, .q = q, .v = v, .u = {}, .dt = dt, .x0 = {x0.data(), 1}, .x1 = {x1.data(), 1}});
+  EXPECT_NEAR(work.dissipated, dt * 3.0 * 0.2 * 0.2, 1e-14);
+  EXPECT_NEAR(work.external, 5.0 * 0.02, 1e-14);
+}
+
+TEST(JointForces, OfAConstantDriveDoTheWorkOfTorqueTimesAngle) {
+  test::RigidSystem system;
+  system.add_body(10.0, Vector3d(100.0, 100.0, 300.0), {});
+  system.connect(Revolute::pattern, {ground, 0}, Vector3d::Zero());
+  system.joint_forces.push_back({.constant = 0.6});
+  const auto model = test::make_model(system);
+  const test::Run run = test::run(*model, test::state_at_rest(*model), {.dt = 0.5, .steps = 100});
+  ASSERT_EQ(run.result.status, variational::Status::completed);
+  EXPECT_NEAR(run.ledger.external, 0.6 * run.state.x[0], 1e-12);
+  // torque t^2/(2 I); the rule is of second order in the angle of a step, 0.05 at the end.
+  EXPECT_NEAR(run.state.x[0], 0.5 * 0.6 / 300.0 * 2500.0, 1e-3);
+}
+
+TEST(JointForces, DoNotAppearInReactions) {
+  // A horizontal beam on a universal joint, held up by springs: the reaction is its weight alone, without a moment.
+  test::RigidSystem system;
+  system.gravity = Vector3d(0.0, 0.0, -0.01);
+  system.add_body(10.0, Vector3d(100.0, 4000.0, 4000.0), {.position = Vector3d(20.0, 10.0, 0.0)});
+  system.connect(Universal::pattern, {ground, 0}, Vector3d::Zero());
+  // At the scene pose: moments of the weight about x and y, 10 mN on arms of 10 and 20 mm.
+  system.joint_forces = {{.joint = 0, .motion = 0, .constant = 1.0}, {.joint = 0, .motion = 1, .constant = -2.0}};
+  const auto model = test::make_model(system);
+  const test::Run run =
+      test::run(*model, test::state_at_rest(*model), {.dt = 1.0, .steps = 5}, [&](const variational::NodeRecord& node) {
+        Eigen::Matrix<double, 6, 1> wrench = Eigen::Matrix<double, 6, 1>::Zero();
+        for (int k = 0; k < 4; ++k) {
+          const Vector3d f = node.constraint_force.segment<3>(3 * k);
+          const Vector3d at = node.state.q.segment<3>(3 * k);
+          if (k == 0) wrench.head<3>() = f;
+          wrench.tail<3>() += at.cross(f);
+        }
+        EXPECT_LT((wrench.head<3>() - Vector3d(0.0, 0.0, 0.1)).norm(), 1e-12);
+        EXPECT_LT(wrench.tail<3>().norm(), 1e-11);
+      });
+  ASSERT_EQ(run.result.status, variational::Status::completed);
+  EXPECT_LT(run.state.x.norm(), 1e-13);
 }
 
 TEST(JointForces, HoldAPrismaticJointAtItsSpringLength) {

@@ -44,9 +44,15 @@ struct Solution {
   VectorXd lambda;
 };
 
+/// T_l^T K T_r + diagonal.
+struct Tangent {
+  MatrixXd K;
+  VectorXd diagonal;
+};
+
 /// The system written out with dense matrices; Z of the first frame.
-Solution reference(const TreeManifold& manifold, const std::array<VectorXd, 2>& x, const MatrixXd& K, const MatrixXd& Z,
-                   const Solution& rhs) {
+Solution reference(const TreeManifold& manifold, const std::array<VectorXd, 2>& x, const Tangent& tangent,
+                   const MatrixXd& Z, const Solution& rhs) {
   const MatrixXd T_l = test::dense_null_space(manifold, x[0]);
   const MatrixXd T_r = test::dense_null_space(manifold, x[1]);
   const MatrixXd G_l =
@@ -56,7 +62,8 @@ Solution reference(const TreeManifold& manifold, const std::array<VectorXd, 2>& 
   const Eigen::Index n_v = T_l.cols();
   const Eigen::Index n_c = G_l.rows();
   MatrixXd matrix = MatrixXd::Zero(n_v + n_c, n_v + n_c);
-  matrix.topLeftCorner(n_v, n_v) = T_l.transpose() * K * T_r;
+  matrix.topLeftCorner(n_v, n_v) = T_l.transpose() * tangent.K * T_r;
+  matrix.topLeftCorner(n_v, n_v).diagonal() += tangent.diagonal;
   matrix.topRightCorner(n_v, n_c) = (G_l * T_l).transpose();
   matrix.bottomLeftCorner(n_c, n_v) = G_r * T_r;
   VectorXd right(n_v + n_c);
@@ -76,6 +83,11 @@ void expect_same(std::mt19937& random, const test::RigidSystem& system, const st
   const auto model = test::make_model(system);
   const TreeManifold& manifold = test::manifold_of(*model);
   const math::BlockMatrix K = random_tangent(random, *model->pattern);
+  // Joints as stiff as 1 mJ or as 1 N/mm: of the size of the inertias.
+  const VectorXd diagonal =
+      test::random_entries(random, manifold.n_v(), 1.0)
+          .cwiseAbs()
+          .cwiseProduct(manifold.rate_scale().unaryExpr([](double s) { return s > 1.0 ? 5.0 : 1e4; }));
   const VectorXd x_0 = test::random_coordinates(random, manifold);
   const std::array<VectorXd, 2> x{x_0, one_step_on(random, manifold, x_0)};
   const Solution rhs{test::random_entries(random, manifold.n_v(), 1.0),
@@ -85,11 +97,11 @@ void expect_same(std::mt19937& random, const test::RigidSystem& system, const st
   manifold.update(x[0], test::configuration_at(manifold, x[0]), *left);
   manifold.update(x[1], test::configuration_at(manifold, x[1]), *right);
   manifold.choose_loop_rows(*left);
-  const Solution expected = reference(manifold, x, K.dense(), manifold.loop_basis(*left), rhs);
+  const Solution expected = reference(manifold, x, {K.dense(), diagonal}, manifold.loop_basis(*left), rhs);
   for (const std::string& kind : kinds) {
     const auto solver = manifold.make_solver(*model->pattern, kind);
     ASSERT_EQ(solver->name(), kind);
-    ASSERT_TRUE(solver->factorise(*left, *right, K));
+    ASSERT_TRUE(solver->factorise(*left, *right, K, diagonal));
     Solution at{VectorXd(manifold.n_v()), VectorXd(manifold.n_c())};
     solver->solve(rhs.w, rhs.lambda, at.w, at.lambda);
     ASSERT_LT((at.w - expected.w).norm(), 1e-10 * expected.w.norm()) << kind;

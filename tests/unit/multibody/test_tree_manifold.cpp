@@ -99,5 +99,37 @@ TEST(TreeManifold, WithoutLoopsIsRegular) {
   EXPECT_EQ(rank.excess, 0.0);
 }
 
+TEST(TreeManifold, ForcesOnRatesAreForcesBetweenBodies) {
+  std::mt19937 random(46);
+  for (int n = 0; n < 30; ++n) {
+    test::RigidSystem system = test::random_forest(random, {.n_bodies = 6, .n_chains = 2, .with_fixed_joints = true});
+    system.actuators.push_back({.name = "a", .element = {}, .controls = {}});
+    const auto model = test::make_model(system);
+    const TreeManifold& manifold = test::manifold_of(*model);
+    const VectorXd x = test::random_coordinates(random, manifold);
+    const VectorXd q = test::configuration_at(manifold, x);
+    const auto frame = manifold.make_frame();
+    manifold.update(x, q, *frame);
+    VectorXd on_rates = test::random_entries(random, manifold.n_v(), 1.0);
+    const VectorXd before = test::random_entries(random, manifold.n_q(), 1.0);
+    VectorXd f = before;
+    manifold.add_forces_on_rates(*frame, 0.3, on_rates, f);
+    const VectorXd projected = test::dense_null_space(manifold, x).transpose() * (f - before);
+    EXPECT_LT((projected - 0.3 * on_rates).norm(), 1e-11 * on_rates.norm());
+    // Without the drives that act from ground no force and no moment is left over.
+    for (const TreeLink& link : manifold.tree().links) {
+      if (link.parent == ground)
+        on_rates.segment(link.first_rate, manifold.tree().joint(link).pattern.n_rates()).setZero();
+    }
+    f.setZero();
+    manifold.add_forces_on_rates(*frame, 1.0, on_rates, f);
+    Eigen::Vector3d force;
+    Eigen::Vector3d moment;
+    model->momentum_maps(q, f, force, moment);
+    EXPECT_LT(force.norm(), 1e-13);
+    EXPECT_LT(moment.norm(), 1e-11);
+  }
+}
+
 }  // namespace
 }  // namespace muldi::multibody

@@ -27,7 +27,7 @@ std::map<std::string, double> values(const std::vector<model::Observable>& list,
   const Eigen::VectorXd none;
   const std::array<double, 1> u{100.0};
   const model::NodeView at{
-      .x = none, .rate = none, .q = q, .v = v, .constraint_force = none, .multipliers = none, .u = u};
+      .x = none, .rate = none, .q = q, .v = v, .constraint_force = none, .multipliers = none, .y = none, .u = u};
   std::map<std::string, double> result;
   for (const model::Observable& observable : list) {
     EXPECT_EQ(observable.size(), 1u);

@@ -61,8 +61,33 @@ TEST(RedundantUpdate, AgreesOnRandomTrees) {
   }
 }
 
+TEST(RedundantUpdate, AgreesWithSpringsDampersAndDrivesInTheJoints) {
+  std::mt19937 random(112);
+  for (int n = 0; n < 10; ++n) {
+    test::RigidSystem system = test::random_forest(random, {.n_bodies = 5, .n_chains = 2, .with_fixed_joints = true});
+    for (int j = 0; j < static_cast<int>(system.joints.size()); ++j) {
+      const auto motions = system.joints[static_cast<std::size_t>(j)].pattern.motions;
+      for (std::size_t k = 0; k < motions.size(); ++k) {
+        if (motions[k].kind == multibody::Motion::Kind::ball) continue;
+        const double size = motions[k].kind == multibody::Motion::Kind::slide ? 1e-3 : 1.0;
+        system.joint_forces.push_back({.joint = j,
+                                       .motion = k,
+                                       .stiffness = 10.0 * size,
+                                       .damping = 100.0 * size,
+                                       .stops = {.lower = -0.05, .upper = 0.05, .stiffness = 30.0 * size},
+                                       .constant = 2.0 * size});
+      }
+    }
+    const auto model = test::make_model(system);
+    const State start = test::state_at(*model, model->manifold->reference(),
+                                       test::random_entries(random, model->manifold->n_v(), 0.01));
+    EXPECT_LT(largest_difference(system, start, 1.0, 100), 1e-8);
+  }
+}
+
 TEST(RedundantUpdate, AgreesOnClosedLoops) {
-  const test::RigidSystem four_bar = test::four_bar({}, test::earth_gravity);
+  test::RigidSystem four_bar = test::four_bar({}, test::earth_gravity);
+  for (int j = 0; j < 4; ++j) four_bar.joint_forces.push_back({.joint = j, .stiffness = 20.0, .damping = 100.0});
   EXPECT_LT(largest_difference(four_bar, test::state_at_rest(*test::make_model(four_bar)), 1.0, 300), 1e-8);
   const test::RigidSystem slider = test::slider_crank(test::earth_gravity);
   EXPECT_LT(largest_difference(slider, test::state_at_rest(*test::make_model(slider)), 1.0, 300), 1e-8);

@@ -1,0 +1,53 @@
+#pragma once
+/// Potentials in electrostatic equilibrium at a given configuration: R_phi(x, phi) = 0.
+///
+/// Newton with conjugate gradients on the exact operator; the preconditioner is a factor that is kept as long as it
+/// serves, so that repeated solves near one configuration cost a few back substitutions.
+#include <Eigen/Core>
+#include <functional>
+
+#include "fem/solid/element_set.hpp"
+#include "fem/solid/solid_factor.hpp"
+#include "fem/solid/solid_unknowns.hpp"
+
+namespace muldi::fem {
+
+class PotentialSolver {
+ public:
+  /// All must outlive the solver. For solids with free potentials.
+  PotentialSolver(const ElementSet& elements, const SolidUnknowns& unknowns, const SolidDescription& data);
+
+  /// Moves the free entries of phi (n_nodes) to equilibrium at x; `surface_charge` (n_nodes) is the charge put on the
+  /// nodes. False if it does not converge.
+  bool solve(const Eigen::Ref<const Eigen::VectorXd>& x, const Eigen::VectorXd& surface_charge,
+             Eigen::Ref<Eigen::VectorXd> phi);
+
+  /// Where the factor was made: with it a restart makes the same one.
+  Eigen::Index n_memory() const { return 1 + factor_x_.size() + factor_phi_.size(); }
+  void store_memory(Eigen::Ref<Eigen::VectorXd> out) const;
+  void restore_memory(const Eigen::Ref<const Eigen::VectorXd>& memory);
+
+ private:
+  void factorise(const Eigen::Ref<const Eigen::VectorXd>& x, const Eigen::Ref<const Eigen::VectorXd>& phi);
+  void precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z);
+  int conjugate_gradients(const ElementFields& at);
+  void condense(Eigen::VectorXd& rows) const;
+
+  const ElementSet& elements_;
+  const SolidUnknowns& unknowns_;
+  const SolidDescription& data_;
+  math::SymmetricBlockPattern pattern_;
+  std::vector<std::int32_t> slots_;
+  SolidFactor factor_;
+  bool factorised_ = false;
+  Eigen::VectorXd factor_x_;  // where it was made
+  Eigen::VectorXd factor_phi_;
+  Eigen::VectorXd r_;
+  Eigen::VectorXd z_;
+  Eigen::VectorXd d_;
+  Eigen::VectorXd Ad_;
+  Eigen::VectorXd step_;
+  Eigen::VectorXd full_;
+};
+
+}  // namespace muldi::fem

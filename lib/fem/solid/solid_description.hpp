@@ -1,0 +1,96 @@
+#pragma once
+/// A solid as plain data: mesh, materials, what is prescribed, loads. Made from the scene; read by Solid.
+#include <Eigen/Core>
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fem/material.hpp"
+
+namespace muldi::fem {
+
+/// How the volume is kept (numerics 1.4, models I to IV; C4: III and IV have the same unknowns here).
+enum class Formulation {
+  displacement,          ///< I: U(det F) at every Gauss point
+  mean_dilatation,       ///< II: U of the element's mean dilatation
+  incompressible,        ///< III: the element's volume is kept at every node in time
+  incompressible_direct  ///< IV: the same equations
+};
+
+/// A number, or the value of a control.
+struct Value {
+  int control = -1;  ///< -1: none
+  double constant = 0.0;
+
+  double at(std::span<const double> u) const { return control < 0 ? constant : u[static_cast<std::size_t>(control)]; }
+  bool is_zero() const { return control < 0 && constant == 0.0; }
+};
+
+/// One component of the displacement of a node.
+struct PrescribedDisplacement {
+  int node = 0;
+  int component = 0;
+  Value value = {};
+};
+
+struct PrescribedPotential {
+  int node = 0;
+  Value value = {};
+};
+
+/// An equipotential with a given total charge and unknown potential.
+struct FloatingElectrode {
+  std::string name = {};
+  std::vector<int> nodes = {};
+  Value charge = {};
+};
+
+/// Nodes whose charge is reported under a name: an electrode with a prescribed potential.
+struct Electrode {
+  std::string name = {};
+  std::vector<int> nodes = {};
+};
+
+/// Forces on nodes that grow with one number: tractions, body forces.
+struct DeadLoad {
+  std::vector<int> nodes = {};
+  std::vector<Eigen::Vector3d> unit = {};  ///< force on each node for the value 1
+  Value value = {};
+};
+
+/// A pressure on faces of the deformed solid, against their outward normals.
+struct Pressure {
+  std::vector<std::array<int, 4>> faces = {};  ///< counterclockwise seen from outside
+  Value value = {};
+};
+
+/// Free charge on the surface: charge on nodes for the value 1.
+struct SurfaceCharge {
+  std::vector<int> nodes = {};
+  std::vector<double> unit = {};
+  Value value = {};
+};
+
+struct SolidDescription {
+  std::string name = {};
+  Eigen::VectorXd X = {};  ///< reference positions in the scene pose (3 n_nodes)
+  std::vector<std::array<int, 8>> cells = {};
+  std::vector<int> material_of_cell = {};
+  std::vector<Material> materials = {};   ///< with a volumetric law in every formulation but the incompressible ones
+  std::vector<double> shear_moduli = {};  ///< of the materials at small strain
+  Formulation formulation = Formulation::mean_dilatation;
+
+  std::vector<PrescribedDisplacement> displacements = {};
+  std::vector<PrescribedPotential> potentials = {};  ///< none: the solid has no field
+  std::vector<FloatingElectrode> floating = {};
+  std::vector<Electrode> electrodes = {};
+  std::vector<DeadLoad> dead_loads = {};
+  std::vector<Pressure> pressures = {};
+  std::vector<SurfaceCharge> surface_charges = {};
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();
+  std::vector<long> labels_of_nodes = {};  ///< numbers that messages use; empty: those of the mesh
+  std::vector<long> labels_of_cells = {};
+};
+
+}  // namespace muldi::fem

@@ -1,0 +1,55 @@
+#pragma once
+/// Linearised equations of a solid: an augmented-Lagrangian matrix whose factor serves many iterations.
+///
+/// With the pressures free and D the compliance of their rows, elimination adds w_e g_e g_e^T, w_e = (c V_e)^2 / D_e,
+/// to the matrix of positions and potentials; the incompressible formulations, D = 0, take a finite D_e and repeat. The
+/// gradients g_e are those of the factorisation, in every use of the factor (numerics 1.4; a newer one diverges).
+#include "fem/solid/solid.hpp"
+
+namespace muldi::fem {
+
+class SolidSolver final : public model::SubstructureSolver {
+ public:
+  SolidSolver(const Solid& solid, model::Linearisation kind);
+  /// By the symbolic analysis alone.
+  static model::SolverSize size_of(const Solid& solid, model::Linearisation kind);
+
+  bool factorise(const model::IntervalPoint& at) override;
+  int unstable_directions() const override;
+  void add_condensed(math::BlockMatrix&) const override {}
+  void reduce(Eigen::VectorXd& bracket, const Eigen::VectorXd& h) override;
+  void expand(Eigen::VectorXd& dq, Eigen::VectorXd& dy) override;
+  std::string name() const override;
+  std::ptrdiff_t factor_bytes() const { return factor_.size().factor_bytes; }
+
+ private:
+  void weigh_pressures(const model::IntervalPoint& at);
+  void assemble(const model::IntervalPoint& at);
+  void back_substitute();
+  void refine();
+  bool exact() const { return kind_ != model::Linearisation::step; }
+
+  const Solid& solid_;
+  model::Linearisation kind_;
+  bool factorised_ = false;
+  math::SymmetricBlockPattern pattern_;
+  std::vector<std::int32_t> slots_;
+  SolidFactor factor_;
+  int expected_negative_ = 0;
+  double potential_rows_ = 1.0;  // factor of the rows of the potentials
+  Volumes lagged_;
+  Eigen::VectorXd weight_;      // w_e
+  Eigen::VectorXd coupling_;    // c V_e
+  Eigen::VectorXd compliance_;  // D_e of the factor
+  Eigen::VectorXd curvature_;
+  Eigen::VectorXd rhs_;
+  Eigen::VectorXd dx_;
+  Eigen::VectorXd rows_;
+  Eigen::VectorXd dp_;
+  Eigen::VectorXd total_x_;
+  Eigen::VectorXd total_phi_;
+  Eigen::VectorXd total_p_;
+  Eigen::VectorXd force_;
+};
+
+}  // namespace muldi::fem

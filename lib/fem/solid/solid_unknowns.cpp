@@ -1,0 +1,80 @@
+#include "fem/solid/solid_unknowns.hpp"
+
+namespace muldi::fem {
+
+SolidUnknowns::SolidUnknowns(const SolidDescription& data)
+    : data_(&data),
+      mask_(static_cast<std::size_t>(data.X.size() / 3), 0),
+      has_field_(!data.potentials.empty() || !data.floating.empty()) {
+  const auto n_nodes = static_cast<int>(mask_.size());
+  for (const PrescribedDisplacement& said : data.displacements) {
+    mask_[static_cast<std::size_t>(said.node)] |= static_cast<std::uint8_t>(1U << said.component);
+    moves_ |= said.value.control >= 0;
+  }
+  for (int node = 0; node < n_nodes; ++node) {
+    for (int i = 0; i < 3; ++i) {
+      if (is_free(node, i)) {
+        ++n_free_positions_;
+      } else {
+        fixed_positions_.push_back(3 * static_cast<Eigen::Index>(node) + i);
+      }
+    }
+  }
+  if (has_field_) {
+    mask_idle_potentials();
+    for (const PrescribedPotential& said : data.potentials) {
+      mask_[static_cast<std::size_t>(said.node)] |= std::uint8_t{1} << potential_bit;
+    }
+  } else {
+    for (std::uint8_t& bits : mask_) bits |= std::uint8_t{1} << potential_bit;
+  }
+  std::vector<char> floats(mask_.size(), 0);
+  for (const FloatingElectrode& electrode : data.floating) {
+    for (const int node : electrode.nodes) {
+      mask_[static_cast<std::size_t>(node)] |= std::uint8_t{1} << potential_bit;
+      floats[static_cast<std::size_t>(node)] = 1;
+    }
+    ++n_free_potentials_;
+  }
+  for (int node = 0; node < n_nodes; ++node) {
+    if (is_free(node, potential_bit)) {
+      ++n_free_potentials_;
+    } else if (floats[static_cast<std::size_t>(node)] == 0) {
+      fixed_potentials_.push_back(node);
+    }
+  }
+}
+
+void SolidUnknowns::mask_idle_potentials() {
+  // Nodes without a dielectric around them have no equation for the potential.
+  std::vector<char> busy(mask_.size(), 0);
+  for (std::size_t cell = 0; cell < data_->cells.size(); ++cell) {
+    const Material& material = data_->materials[static_cast<std::size_t>(data_->material_of_cell[cell])];
+    if (!material.electric) continue;
+    for (const int node : data_->cells[cell]) busy[static_cast<std::size_t>(node)] = 1;
+  }
+  for (std::size_t node = 0; node < mask_.size(); ++node) {
+    if (busy[node] == 0) mask_[node] |= std::uint8_t{1} << potential_bit;
+  }
+}
+
+void SolidUnknowns::place_positions(std::span<const double> u, Eigen::Ref<Eigen::VectorXd> x) const {
+  for (const PrescribedDisplacement& said : data_->displacements) {
+    const Eigen::Index at = 3 * static_cast<Eigen::Index>(said.node) + said.component;
+    x[at] = data_->X[at] + said.value.at(u);
+  }
+}
+
+void SolidUnknowns::place_potentials(std::span<const double> u, Eigen::Ref<Eigen::VectorXd> phi) const {
+  for (const PrescribedPotential& said : data_->potentials) phi[said.node] = said.value.at(u);
+}
+
+void SolidUnknowns::keep_free_positions(Eigen::Ref<Eigen::VectorXd> rows) const {
+  for (const Eigen::Index i : fixed_positions_) rows[i] = 0.0;
+}
+
+void SolidUnknowns::keep_solved_potentials(Eigen::Ref<Eigen::VectorXd> rows) const {
+  for (const Eigen::Index i : fixed_potentials_) rows[i] = 0.0;
+}
+
+}  // namespace muldi::fem

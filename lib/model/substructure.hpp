@@ -1,0 +1,117 @@
+#pragma once
+/// The contract of parts with many unknowns of their own: finite-element solids.
+///
+/// A substructure is an interval term with two slices of unknowns: positions q_s, which follow the directors in q and
+/// have no constraints of the manifold, and stage unknowns y, which have no inertia (numerics, C2): potentials, element
+/// pressures. Its equations are the rows of the momentum balance of its slice and as many stage rows h as it has stage
+/// unknowns. Some of its positions are prescribed and some follow bodies through constant linear maps; both are rows
+/// and columns of the identity to its solver. A solver eliminates the substructure: what is left are forces and a
+/// stiffness on the bodies that it is tied to.
+#include <memory>
+#include <string>
+
+#include "model/interval_term.hpp"
+
+namespace muldi::model {
+
+/// A contiguous range of unknowns.
+struct Slice {
+  Eigen::Index first = 0;
+  Eigen::Index size = 0;
+
+  Eigen::Index end() const { return first + size; }
+};
+
+/// Which equations a solver linearises.
+enum class Linearisation {
+  step,      ///< momentum balance of a step and its stage rows
+  velocity,  ///< M v + constraint impulses = p at a node
+  rest,      ///< equilibrium at the point's configuration
+};
+
+/// Controls that place what is not free: at the middle of the interval for potentials, at its end for positions.
+struct Placement {
+  std::span<const double> u;
+  std::span<const double> u_end;
+};
+
+/// How large an increment is: 1 is the size of the part, of its potentials, of its pressures.
+struct IncrementSize {
+  double positions = 0.0;
+  double stage = 0.0;
+
+  double largest() const { return positions > stage ? positions : stage; }
+};
+
+/// Factorised linearisation of one substructure. Vectors are those of the whole system; a solver reads and writes the
+/// slices of its part and, where the part is tied to bodies, the entries of these.
+class SubstructureSolver {
+ public:
+  virtual ~SubstructureSolver() = default;
+
+  /// Linearises and factorises at the point; false if the matrix is singular to working precision.
+  virtual bool factorise(const IntervalPoint& at) = 0;
+  /// Negative pivots beyond those that the potentials must have: 0 at a stable equilibrium.
+  virtual int unstable_directions() const = 0;
+  /// Adds the stiffness of the eliminated part to the blocks of the bodies.
+  virtual void add_condensed(math::BlockMatrix& K) const = 0;
+  /// Solves for the slices with the bodies held: `bracket` (n_q) is the residual of the momentum balance, to whose rows
+  /// of the bodies the response is added; `h` (n_y) the residual of the stage rows.
+  virtual void reduce(Eigen::VectorXd& bracket, const Eigen::VectorXd& h) = 0;
+  /// Completes dq and dy for the motion of the bodies that dq holds.
+  virtual void expand(Eigen::VectorXd& dq, Eigen::VectorXd& dy) = 0;
+  virtual std::string name() const = 0;
+};
+
+/// What a solver of a substructure takes, told without making it.
+struct SolverSize {
+  std::string solver = {};  ///< its name
+  double matrix_bytes = 0.0;
+  double factor_bytes = 0.0;
+};
+
+class Substructure : public IntervalTerm {
+ public:
+  const Slice& q_slice() const { return q_; }
+  const Slice& y_slice() const { return y_; }
+  /// Where the slices begin; once, while the model is built.
+  void place_slices(Eigen::Index first_q, Eigen::Index first_y) {
+    q_.first = first_q;
+    y_.first = first_y;
+  }
+
+  /// The configuration of the scene pose and stage values to start from.
+  virtual void start(Eigen::VectorXd& q, Eigen::VectorXd& y) const = 0;
+  /// Writes the positions and potentials that are not free.
+  virtual void place(const Placement& at, Eigen::VectorXd& q, Eigen::VectorXd& y) const = 0;
+  /// Moves the stage unknowns without inertia to their equilibrium at the midpoint: a consistent start after a sudden
+  /// change of the controls.
+  virtual void settle_stage(const IntervalPoint& at, Eigen::VectorXd& y) const = 0;
+
+  /// A solver for one kind of equations; `name`: auto | direct | iterative | a named solver.
+  virtual std::unique_ptr<SubstructureSolver> make_solver(Linearisation kind, const std::string& name) const = 0;
+  virtual SolverSize solver_size(Linearisation kind, const std::string& name) const = 0;
+  /// Largest entries of an increment relative to the natural sizes of the part.
+  virtual IncrementSize size_of(const Eigen::VectorXd& dq, const Eigen::VectorXd& dy) const = 0;
+  /// True if positions are prescribed by controls, so that the values at the end of an interval matter.
+  virtual bool moves() const = 0;
+  /// Zeroes the rows of the balance that are not the part's to solve: prescribed positions.
+  virtual void keep_free(Eigen::VectorXd& rows) const = 0;
+  /// rows += the impulse on the slice that the multipliers of the velocity equations need: with `impulse` (n_y) as
+  /// their solver gives it, M v + this = p but for what holds prescribed positions.
+  virtual void add_multiplier_impulse(const Eigen::VectorXd& q, const Eigen::VectorXd& impulse,
+                                      Eigen::VectorXd& rows) const {
+    static_cast<void>(q), static_cast<void>(impulse), static_cast<void>(rows);
+  }
+
+  /// What iterative evaluations start from, and which thus decides their last bits: a restart needs it.
+  virtual Eigen::Index n_memory() const = 0;
+  virtual void store_memory(Eigen::Ref<Eigen::VectorXd> out) const = 0;
+  virtual void restore_memory(const Eigen::Ref<const Eigen::VectorXd>& memory) const = 0;
+
+ protected:
+  Slice q_;
+  Slice y_;
+};
+
+}  // namespace muldi::model

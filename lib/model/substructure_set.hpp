@@ -1,0 +1,48 @@
+#pragma once
+/// The substructures of a model in the Newton iteration: their solvers, called together.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model/model.hpp"
+
+namespace muldi::model {
+
+/// Does nothing, at no cost, where the model has no substructures.
+class SubstructureSet {
+ public:
+  /// The model must outlive the set; `name` as the substructures' make_solver takes it.
+  SubstructureSet(const Model& model, Linearisation kind, const std::string& name);
+
+  bool empty() const { return solvers_.empty(); }
+  /// True if positions are prescribed by controls.
+  bool moves() const;
+  /// Writes what is not free.
+  void place(const Placement& at, Eigen::VectorXd& q, Eigen::VectorXd& y) const;
+  void settle_stage(const IntervalPoint& at, Eigen::VectorXd& y) const;
+  void keep_free(Eigen::VectorXd& rows) const;
+  /// Largest entries of an increment over all parts; 0 without parts.
+  double size_of(const Eigen::VectorXd& dq, const Eigen::VectorXd& dy) const;
+  /// Largest entry of the rows of the substructures' slices.
+  double largest_row(const Eigen::VectorXd& rows) const;
+
+  /// False if a matrix is singular.
+  bool factorise(const IntervalPoint& at);
+  bool factorised() const { return factorised_; }
+  /// Eliminates the parts: their stiffness goes to K, their response to the rows of the bodies in `bracket`.
+  void eliminate(Eigen::VectorXd& bracket, const Eigen::VectorXd& h, math::BlockMatrix& K);
+  /// Completes dq and dy for the motion of the bodies in dq.
+  void complete(Eigen::VectorXd& dq, Eigen::VectorXd& dy);
+  int unstable_directions() const;
+  /// Copies the substructures' slices of q.
+  void copy_slices(const Eigen::VectorXd& from, Eigen::VectorXd& to) const;
+  /// to += factor from on the substructures' slices of q.
+  void add_slices(double factor, const Eigen::VectorXd& from, Eigen::VectorXd& to) const;
+
+ private:
+  const Model& model_;
+  std::vector<std::unique_ptr<SubstructureSolver>> solvers_;
+  bool factorised_ = false;
+};
+
+}  // namespace muldi::model

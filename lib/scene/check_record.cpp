@@ -1,0 +1,102 @@
+// What is recorded of solids.
+#include <algorithm>
+
+#include "base/text.hpp"
+#include "scene/check_solids.hpp"
+
+namespace muldi::scene {
+namespace {
+
+bool is_electric(SolidField field) {
+  return field == SolidField::potential || field == SolidField::field || field == SolidField::true_field;
+}
+
+}  // namespace
+
+void SolidCheck::check_potential(const Origin& origin, const SolidName& name) {
+  const Entry<Solid>* solid = scene_.solids.find(name.name);
+  if (solid == nullptr || failed(solid->origin) || has_field(solid->value)) return;
+  error(origin, "solid " + base::in_quotes(name.name) + " has no field: no potential or charge is prescribed on it");
+}
+
+void SolidCheck::check_region(const ProbeRegion& region, Need need) {
+  const Entry<Solid>* solid = scene_.solids.find(region.solid.name);
+  if (solid != nullptr && !context_.failed(solid->origin.path + ".mesh")) {
+    check_where(solid->value, region.where, need);
+  }
+}
+
+void SolidCheck::check_probe_point(ProbePoint& point) {
+  if (!point.body) return;
+  if (point.body->name == ground) {
+    error(point.origin, "the ground has no named points");
+  } else {
+    check_.resolve(point.body->name, point.point);
+  }
+}
+
+void SolidCheck::check_along(const Entry<Probe>& probe, const std::optional<Vec3>& along) {
+  if (along) check_.check_direction({"record", "probes", probe.name, "along"}, *along);
+}
+
+void SolidCheck::check_probe(const Entry<Probe>& entry) {
+  const auto potential_along = [&](ProbeQuantity quantity, const std::optional<Vec3>& along) {
+    if (quantity == ProbeQuantity::potential && along) {
+      check_.error({"record", "probes", entry.name, "along"}, "a potential has no direction");
+    }
+  };
+  if (const auto* distance = std::get_if<DistanceProbe>(&entry.value)) {
+    check_along(entry, distance->along);
+  } else if (const auto* point = std::get_if<PointProbe>(&entry.value)) {
+    check_along(entry, point->along);
+    potential_along(point->of, point->along);
+    if (point->of != ProbeQuantity::potential) return;
+    if (point->point.solid) {
+      check_potential(point->point.origin, *point->point.solid);
+    } else {
+      error(point->point.origin, "a body has no potential");
+    }
+  } else if (const auto* average = std::get_if<AverageProbe>(&entry.value)) {
+    check_along(entry, average->along);
+    potential_along(average->of, average->along);
+    check_region(average->average, Need::faces);
+    if (average->of == ProbeQuantity::potential) check_potential(average->average.where.origin, average->average.solid);
+  } else if (const auto* reaction = std::get_if<ReactionProbe>(&entry.value)) {
+    check_along(entry, reaction->along);
+    check_region(reaction->reaction, Need::nodes);
+  } else if (const auto* charge = std::get_if<ChargeProbe>(&entry.value)) {
+    const Entry<Solid>* solid = scene_.solids.find(charge->charge.solid.name);
+    if (solid == nullptr || solid->value.electrodes.find(charge->charge.name) != nullptr) return;
+    error(charge->charge.solid.origin, "solid " + base::in_quotes(solid->name) + " has no electrode " +
+                                           base::in_quotes(charge->charge.name) +
+                                           base::did_you_mean(charge->charge.name, solid->value.electrodes.names()));
+  }
+}
+
+void SolidCheck::record() {
+  for (const Entry<RecordedFields>& entry : scene_.record.fields) {
+    const auto& fields = entry.value.fields;
+    if (failed(entry.origin) || std::none_of(fields.begin(), fields.end(), is_electric)) continue;
+    check_potential(entry.origin, {.name = entry.name, .origin = entry.origin});
+  }
+  for (Entry<Probe>& entry : scene_.record.probes) {
+    if (failed(entry.origin)) continue;
+    if (auto* distance = std::get_if<DistanceProbe>(&entry.value)) {
+      for (ProbePoint& point : distance->distance) check_probe_point(point);
+    } else if (auto* point = std::get_if<PointProbe>(&entry.value)) {
+      check_probe_point(point->point);
+    }
+    if (!failed(entry.origin)) check_probe(entry);
+  }
+}
+
+void SolidCheck::legacy_laws() {
+  for (const Entry<Material>& material : scene_.materials) {
+    if (!material.value.electric || !std::holds_alternative<Vu>(material.value.electric->law)) continue;
+    context_.add(warning_at(check_.origin_of({"materials", material.name, "electric"}),
+                            "the law vu only serves to reproduce earlier work, whose constants mean a negative "
+                            "permittivity; to predict, take ideal_dielectric"));
+  }
+}
+
+}  // namespace muldi::scene

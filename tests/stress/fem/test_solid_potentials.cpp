@@ -1,0 +1,91 @@
+/// The potential has no inertia and must not ring: no zig-zag under steps of the voltage (numerics 5 no. 7, C2).
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "support/solid_system.hpp"
+#include "support/trajectory.hpp"
+#include "variational/stepper.hpp"
+
+namespace muldi::fem {
+namespace {
+
+using Eigen::VectorXd;
+
+/// A cube with an electrode on a part of its top, whose voltage changes every ten steps.
+test::SolidSystem switched(double dt) {
+  test::SolidSystem system = test::solid_of(test::cube_of(3));
+  system.hold_lower_faces();
+  base::Samples steps;
+  for (int k = 0; k < 100; ++k) {
+    steps.times.push_back(10 * dt * k);
+    steps.values.push_back(k % 2 == 0 ? 1e4 : 1.5e4);
+  }
+  system.set_potential(test::plane(2, 0.0), {});
+  system.set_potential([](const Eigen::Vector3d& X) { return X[2] > 1 - 1e-9 && X[0] < 0.5; },
+                       system.control(base::TimeFunction(base::TimeFunction::Kind(steps))));
+  Material material = test::rubber(0.233, 10.0, Formulation::displacement);
+  material.electric = IdealDielectric{.permittivity = 3.7 * test::eps0_si};
+  material.viscous = KelvinVoigt{.viscosity = 0.05};
+  system.fill(material, 0.233, Formulation::displacement);
+  return system;
+}
+
+struct Motion {
+  std::vector<VectorXd> potentials;  ///< one a step
+  VectorXd q;
+};
+
+Motion motion(double dt, long steps, double disturbance) {
+  const test::SolidSystem system = switched(dt);
+  const auto model = test::make_model(system);
+  variational::State state = test::moving_state(*model, dt);
+  std::mt19937 random(7);
+  state.y += test::random_values(random, state.y.size(), disturbance);
+  variational::Stepper stepper(*model, dt, {});
+  std::vector<double> u(1);
+  Motion all;
+  while (state.step < steps) {
+    model->evaluate_controls((static_cast<double>(state.step) + 0.5) * dt, u);
+    const variational::StepReport report = stepper.advance(state, u);
+    EXPECT_EQ(report.status, variational::Status::running) << report.sentence;
+    if (report.status != variational::Status::running) break;
+    all.potentials.push_back(state.y);
+  }
+  all.q = state.q;
+  return all;
+}
+
+/// Largest second difference of the potentials between two voltage changes in [first, last).
+double zigzag(const Motion& of, std::size_t first, std::size_t last) {
+  double largest = 0.0;
+  for (std::size_t n = first; n + 2 < last; ++n) {
+    if (n % 10 > 7) continue;
+    const VectorXd second = of.potentials[n + 2] - 2.0 * of.potentials[n + 1] + of.potentials[n];
+    largest = std::max(largest, second.lpNorm<Eigen::Infinity>());
+  }
+  return largest;
+}
+
+TEST(SolidPotentials, DoNotZigzagUnderStepsOfTheVoltage) {
+  const Motion at = motion(2e-3, 1000, 0.0);
+  ASSERT_EQ(at.potentials.size(), 1000u);
+  const double early = zigzag(at, 0, 100);
+  const double late = zigzag(at, 900, 1000);
+  EXPECT_LE(late, early);
+  EXPECT_LT(early, 1e-3 * 1.5e4);
+  EXPECT_GT(early, 0.0);
+  std::cout << "zig-zag of the potentials: " << early << " V early, " << late << " V late\n";
+}
+
+TEST(SolidPotentials, ForgetADisturbedStart) {
+  const Motion calm = motion(2e-3, 100, 0.0);
+  const Motion disturbed = motion(2e-3, 100, 1e-3 * 1.5e4);
+  EXPECT_LT((calm.q - disturbed.q).lpNorm<Eigen::Infinity>(), 1e-9);
+  for (const std::size_t n : {0U, 1U, 50U, 99U}) {
+    EXPECT_LT((calm.potentials[n] - disturbed.potentials[n]).lpNorm<Eigen::Infinity>(), 1e-8 * 1.5e4) << n;
+  }
+}
+
+}  // namespace
+}  // namespace muldi::fem
