@@ -1,7 +1,6 @@
 #include "fem/solid/solid_loads.hpp"
 
-#include <Eigen/Geometry>
-#include <cmath>
+#include "fem/solid/face_shares.hpp"
 
 namespace muldi::fem {
 namespace {
@@ -25,26 +24,12 @@ SolidLoads::SolidLoads(const SolidDescription& data, const ElementSet& elements)
     : data_(&data), nodal_mass_(lumped_masses(data, elements)), has_gravity_(data.gravity != Eigen::Vector3d::Zero()) {}
 
 void add_face_pressure(const std::array<int, 4>& face, double value, const double* x, double* f) {
-  Eigen::Matrix<double, 3, 4> corner;
-  for (int a = 0; a < 4; ++a) {
-    const double* at = x + 3 * static_cast<std::ptrdiff_t>(face[static_cast<std::size_t>(a)]);
-    corner.col(a) << at[0], at[1], at[2];
-  }
-  const double g = 1.0 / std::sqrt(3.0);
-  for (const double xi : {-g, g}) {
-    for (const double eta : {-g, g}) {
-      const Eigen::Vector4d N(0.25 * (1 - xi) * (1 - eta), 0.25 * (1 + xi) * (1 - eta), 0.25 * (1 + xi) * (1 + eta),
-                              0.25 * (1 - xi) * (1 + eta));
-      const Eigen::Vector4d N_xi(-0.25 * (1 - eta), 0.25 * (1 - eta), 0.25 * (1 + eta), -0.25 * (1 + eta));
-      const Eigen::Vector4d N_eta(-0.25 * (1 - xi), -0.25 * (1 + xi), 0.25 * (1 + xi), 0.25 * (1 - xi));
-      const Eigen::Vector3d along = corner * N_xi;
-      const Eigen::Vector3d area = along.cross(Eigen::Vector3d(corner * N_eta));
-      for (int a = 0; a < 4; ++a) {
-        double* to = f + 3 * static_cast<std::ptrdiff_t>(face[static_cast<std::size_t>(a)]);
-        for (int i = 0; i < 3; ++i) to[i] -= value * N[a] * area[i];
-      }
+  each_face_point(face, x, [&](const Eigen::Vector4d& N, const Eigen::Vector3d& da) {
+    for (int a = 0; a < 4; ++a) {
+      double* to = f + 3 * static_cast<std::ptrdiff_t>(face[static_cast<std::size_t>(a)]);
+      for (int i = 0; i < 3; ++i) to[i] -= value * N[a] * da[i];
     }
-  }
+  });
 }
 
 void SolidLoads::add_external(const Eigen::Ref<const Eigen::VectorXd>& x, std::span<const double> u,
