@@ -80,9 +80,9 @@ class Substructure : public IntervalTerm {
     y_.first = first_y;
   }
 
-  /// The configuration of the scene pose and stage values to start from.
+  /// The configuration of the scene pose, but of what follows the bodies in q, and stage values to start from.
   virtual void start(Eigen::VectorXd& q, Eigen::VectorXd& y) const = 0;
-  /// Writes the positions and potentials that are not free.
+  /// Writes the positions and potentials that are not free; the entries of the bodies in q are read.
   virtual void place(const Placement& at, Eigen::VectorXd& q, Eigen::VectorXd& y) const = 0;
   /// Moves the stage unknowns without inertia to their equilibrium at the midpoint: a consistent start after a sudden
   /// change of the controls.
@@ -95,8 +95,16 @@ class Substructure : public IntervalTerm {
   virtual IncrementSize size_of(const Eigen::VectorXd& dq, const Eigen::VectorXd& dy) const = 0;
   /// True if positions are prescribed by controls, so that the values at the end of an interval matter.
   virtual bool moves() const = 0;
-  /// Zeroes the rows of the balance that are not the part's to solve: prescribed positions.
+  /// Zeroes the rows of the balance that are not the part's to solve: prescribed positions, and those that follow
+  /// bodies.
   virtual void keep_free(Eigen::VectorXd& rows) const = 0;
+  /// Adds to the rows of bodies A^T times the rows of the positions that follow them, x = A q. These keep their values,
+  /// which in the rows of constraint forces are the forces of the ties on the part; so call it once, before a
+  /// projection, and keep_free after it.
+  virtual void gather(Eigen::VectorXd& rows) const = 0;
+  /// Writes into a velocity or an increment (n_q) what is not free: zero where positions are prescribed, A times the
+  /// entries of the bodies where they follow these.
+  virtual void follow(Eigen::VectorXd& velocity) const = 0;
   /// rows += the impulse on the slice that the multipliers of the velocity equations need: with `impulse` (n_y) as
   /// their solver gives it, M v + this = p but for what holds prescribed positions.
   virtual void add_multiplier_impulse(const Eigen::VectorXd& q, const Eigen::VectorXd& impulse,

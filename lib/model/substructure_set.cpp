@@ -25,6 +25,10 @@ void SubstructureSet::keep_free(Eigen::VectorXd& rows) const {
   for (const auto& part : model_.substructures) part->keep_free(rows);
 }
 
+void SubstructureSet::gather(Eigen::VectorXd& rows) const {
+  for (const auto& part : model_.substructures) part->gather(rows);
+}
+
 double SubstructureSet::size_of(const Eigen::VectorXd& dq, const Eigen::VectorXd& dy) const {
   double largest = 0.0;
   for (const auto& part : model_.substructures) {

@@ -21,6 +21,7 @@ class SubstructureSet {
   void place(const Placement& at, Eigen::VectorXd& q, Eigen::VectorXd& y) const;
   void settle_stage(const IntervalPoint& at, Eigen::VectorXd& y) const;
   void keep_free(Eigen::VectorXd& rows) const;
+  void gather(Eigen::VectorXd& rows) const;
   /// Largest entries of an increment over all parts; 0 without parts.
   double size_of(const Eigen::VectorXd& dq, const Eigen::VectorXd& dy) const;
   /// Largest entry of the rows of the substructures' slices.

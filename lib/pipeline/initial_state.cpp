@@ -243,8 +243,8 @@ void add_solid_velocities(const scene::Scene& scene, const build::BuiltModel& bu
     for (Eigen::Index first = solid.q_slice().first; first < solid.q_slice().end(); first += 3) {
       v.segment<3>(first) += velocity + omega.cross(Eigen::Vector3d(q.segment<3>(first)) - centre);
     }
-    solid.keep_free(v);
   }
+  for (const auto& part : built.model->substructures) part->follow(v);
 }
 
 }  // namespace

@@ -72,6 +72,7 @@ void EquilibriumSolver::evaluate(const StaticState& state, std::span<const doubl
   terms_ = std::max(terms_, force_.lpNorm<Eigen::Infinity>());
   bracket_ = forces_.force;
   manifold_.add_constraint_forces(q_, -1.0, state.multipliers, bracket_);
+  parts_.gather(bracket_);
   parts_.keep_free(bracket_);
   project_bracket();
   manifold_.constraints(q_, gaps_);
@@ -271,6 +272,7 @@ EquilibriumReport EquilibriumSolver::solve(StaticState& state, std::span<const d
   linearise(at, u);
   report.stability = stability();
   at.multipliers = least_norm(at.multipliers);
+  parts_.copy_slices(q_, at.q);
   state = at;
   return report;
 }

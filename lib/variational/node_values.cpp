@@ -36,6 +36,7 @@ bool NodeEvaluator::solve_velocities(const State& state, NodeValues& out) {
   bracket_ = state.p;
   if (!parts_.empty()) {
     if (!parts_.factorise({.q0 = state.q, .q1 = state.q, .q = state.q, .v = zero_q_, .u = {}})) return false;
+    parts_.gather(bracket_);
     parts_.keep_free(bracket_);
     parts_.eliminate(bracket_, zero_y_, M_);
   }

@@ -91,6 +91,7 @@ double Stepper::residual_of(const State& state) {
   const Eigen::MatrixXd& Z = manifold_.loop_basis(*frame_n_);
   lambda_.noalias() = Z * mu_;
   manifold_.add_constraint_forces(state.q, -1.0, lambda_, bracket_);
+  parts_.gather(bracket_);
   project_bracket();
   manifold_.constraints(q_, gaps_);
   g_.noalias() = Z.transpose() * gaps_;
@@ -355,6 +356,7 @@ void Stepper::finish(State& state, std::span<const double> u, StepReport& report
   constraint_force_ = -(state.p + 0.5 * dt_ * forces_.force - forces_.momentum) / weight;
   if (forces_.begin.size() > 0) constraint_force_ -= forces_.begin / weight;
   manifold_.add_forces_on_rates(*frame_n_, -0.5 * dt_ / weight, forces_.on_rates, constraint_force_);
+  parts_.gather(constraint_force_);
   report.violation = forces_.violation;
   report.work = model_.work(point(state, u));
   manifold_.difference(state.x, x_, state.increment);

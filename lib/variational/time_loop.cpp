@@ -106,6 +106,7 @@ void TimeLoop::record_end(const LoopCallbacks& callbacks, const State& state, Le
   for (const auto& part : model_.substructures) {
     part->add_multiplier_impulse(state.q, nodes_.stage_impulse(), end_force_);
   }
+  for (const auto& part : model_.substructures) part->gather(end_force_);
   end_force_ /= half;
   end_multipliers_ = nodes_.loop_impulse() / half;
   end_stage_ = nodes_.stage_impulse() / half;

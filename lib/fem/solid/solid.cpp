@@ -30,6 +30,7 @@ Solid::Solid(SolidDescription data)
     : data_(std::move(data)),
       elements_(data_.X, data_.cells, data_.material_of_cell, element_materials(data_)),
       unknowns_(data_),
+      ties_(data_),
       loads_(data_, elements_),
       V_(Eigen::VectorXd::Zero(elements_.n_cells())),
       size_(diagonal(data_.X)),
@@ -94,11 +95,13 @@ Eigen::VectorXd Solid::charge_rows(const Eigen::Ref<const Eigen::VectorXd>& x, c
 
 void Solid::start(Eigen::VectorXd& q, Eigen::VectorXd& y) const {
   positions(q) = data_.X;
+  ties_.follow(q_.first, q);
   y.segment(y_.first, y_.size).setZero();
 }
 
 void Solid::place(const model::Placement& at, Eigen::VectorXd& q, Eigen::VectorXd& y) const {
   unknowns_.place_positions(at.u_end, positions(q));
+  ties_.follow(q_.first, q);
   if (unknowns_.has_field()) unknowns_.place_potentials(at.u, potentials(y));
 }
 
@@ -225,6 +228,18 @@ void Solid::restore_memory(const Eigen::Ref<const Eigen::VectorXd>& memory) cons
   potential_scale_ = memory[0];
   phi_ = memory.segment(1, phi_.size());
   potential_solver_->restore_memory(memory.tail(potential_solver_->n_memory()));
+}
+
+void Solid::request(model::PatternRequest& pattern) const {
+  std::vector<int> nodes;
+  nodes.reserve(data_.hosts.size());
+  for (const Host& host : data_.hosts) nodes.push_back(host.pattern_node);
+  pattern.add_clique(nodes);
+}
+
+void Solid::follow(Eigen::VectorXd& velocity) const {
+  unknowns_.keep_free_positions(positions(velocity));
+  ties_.follow(q_.first, velocity);
 }
 
 void Solid::keep_free(Eigen::VectorXd& rows) const { unknowns_.keep_free_positions(positions(rows)); }

@@ -14,6 +14,7 @@
 #include "fem/solid/potential_solver.hpp"
 #include "fem/solid/solid_loads.hpp"
 #include "fem/solid/solid_unknowns.hpp"
+#include "fem/solid/ties.hpp"
 #include "fem/solid/volumes.hpp"
 #include "model/substructure.hpp"
 
@@ -27,6 +28,9 @@ class Solid final : public model::Substructure {
   const SolidDescription& data() const { return data_; }
   const ElementSet& elements() const { return elements_; }
   const SolidUnknowns& unknowns() const { return unknowns_; }
+  const Ties& ties() const { return ties_; }
+  /// Name of the energy part, and of the folder of the results.
+  std::string part() const { return data_.part.empty() ? "solids/" + data_.name : data_.part; }
   bool has_pressures() const { return data_.formulation != Formulation::displacement; }
   bool is_incompressible() const {
     return data_.formulation == Formulation::incompressible || data_.formulation == Formulation::incompressible_direct;
@@ -84,6 +88,8 @@ class Solid final : public model::Substructure {
   model::SolverSize solver_size(model::Linearisation kind, const std::string& name) const override;
   model::IncrementSize size_of(const Eigen::VectorXd& dq, const Eigen::VectorXd& dy) const override;
   void keep_free(Eigen::VectorXd& rows) const override;
+  void gather(Eigen::VectorXd& rows) const override { ties_.gather(q_.first, rows); }
+  void follow(Eigen::VectorXd& velocity) const override;
   bool moves() const override { return unknowns_.moves(); }
   void add_multiplier_impulse(const Eigen::VectorXd& q, const Eigen::VectorXd& impulse,
                               Eigen::VectorXd& rows) const override;
@@ -92,13 +98,13 @@ class Solid final : public model::Substructure {
   void restore_memory(const Eigen::Ref<const Eigen::VectorXd>& memory) const override;
 
   // IntervalTerm
-  void request(model::PatternRequest&) const override {}
+  void request(model::PatternRequest& pattern) const override;
   void bind(const math::BlockPattern&) override {}
   void add_forces(const model::IntervalPoint& at, model::IntervalForces& out) const override;
   void add_tangent(const model::IntervalPoint&, const model::TangentWeights&, math::BlockMatrix&) const override {}
   void add_control_force(const model::IntervalPoint& at, int control, Eigen::VectorXd& out) const override;
   model::IntervalWork work(const model::IntervalPoint& at) const override;
-  std::vector<std::string> parts() const override { return {"solids/" + data_.name}; }
+  std::vector<std::string> parts() const override { return {part()}; }
   void energies(const model::NodePoint& at, std::span<model::Energy> out) const override;
   std::string inadmissible(const Eigen::VectorXd& q) const override;
 
@@ -109,6 +115,7 @@ class Solid final : public model::Substructure {
   SolidDescription data_;
   ElementSet elements_;
   SolidUnknowns unknowns_;
+  Ties ties_;
   SolidLoads loads_;
   Eigen::VectorXd V_;
   double size_ = 0.0;

@@ -62,12 +62,12 @@ void SolidLoads::add_control_force(const Eigen::Ref<const Eigen::VectorXd>& x, i
   for (const DeadLoad& load : data_->dead_loads) {
     if (load.value.control != control) continue;
     for (std::size_t k = 0; k < load.nodes.size(); ++k) {
-      f.segment<3>(3 * static_cast<Eigen::Index>(load.nodes[k])) += load.unit[k];
+      f.segment<3>(3 * static_cast<Eigen::Index>(load.nodes[k])) += load.value.factor * load.unit[k];
     }
   }
   for (const Pressure& pressure : data_->pressures) {
     if (pressure.value.control != control) continue;
-    for (const auto& face : pressure.faces) add_face_pressure(face, 1.0, x.data(), f.data());
+    for (const auto& face : pressure.faces) add_face_pressure(face, pressure.value.factor, x.data(), f.data());
   }
 }
 

@@ -11,6 +11,7 @@ SolidUnknowns::SolidUnknowns(const SolidDescription& data)
     mask_[static_cast<std::size_t>(said.node)] |= static_cast<std::uint8_t>(1U << said.component);
     moves_ |= said.value.control >= 0;
   }
+  for (const Tie& tie : data.ties) mask_[static_cast<std::size_t>(tie.node)] |= std::uint8_t{0b111};
   for (int node = 0; node < n_nodes; ++node) {
     for (int i = 0; i < 3; ++i) {
       if (is_free(node, i)) {
