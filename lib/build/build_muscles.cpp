@@ -59,13 +59,6 @@ muscles::MuscleGiven given_of(const scene::Scene& scene, const scene::Muscle& mu
           .isolated = is_free(muscle)};
 }
 
-std::string_view word_of(scene::ControlQuantity quantity) {
-  for (const auto& word : scene::words(quantity)) {
-    if (word.value == quantity) return word.word;
-  }
-  return {};
-}
-
 /// Where the element of a model takes its control from.
 template <class Model>
 auto inputs_of(const TermContext& context, const scene::Muscle& muscle, const muscles::MuscleGiven& given) {

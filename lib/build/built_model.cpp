@@ -126,7 +126,9 @@ BuiltModel build_model(const scene::Scene& scene) {
   add_springs(context);
   add_joint_forces(context);
   add_loads(context);
-  add_solids(scene, controls, built);
+  add_solids(context);
+  add_meshed_muscles(context);
+  add_field_histories(scene, built);
   built.model->controls = controls.take();
   built.model->bind();
   built.linear = linear_solver(scene, built);

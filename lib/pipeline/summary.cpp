@@ -79,12 +79,25 @@ std::string potentials_text(const fem::SolidUnknowns& unknowns) {
   return base::format("unknown potentials {}", unknowns.n_free_potentials());
 }
 
+/// Positions that are no unknowns: `3 follow bodies (arm)`.
+std::string ties_text(const fem::Solid& solid) {
+  const fem::SolidDescription& data = solid.data();
+  std::string hosts;
+  for (const fem::Host& host : data.hosts) hosts += (hosts.empty() ? "" : " ") + host.name;
+  std::string text;
+  if (!data.ties.empty()) text += base::format(", {} eliminated by ties to {}", 3 * data.ties.size(), hosts);
+  if (!data.displacements.empty()) text += base::format(", {} prescribed", data.displacements.size());
+  return text;
+}
+
 std::string solid_text(const scene::Scene& scene, const fem::Solid& solid, const model::SolverSize& size) {
   const fem::SolidUnknowns& unknowns = solid.unknowns();
-  std::string text = base::format("  solid {}: {} nodes, {} cells, {}\n", solid.data().name, solid.elements().n_nodes(),
-                                  solid.elements().n_cells(), word_of(solid.data().formulation));
+  const std::string kind = solid.part().starts_with("muscles/") ? "muscle" : "solid";
+  std::string text =
+      base::format("  {} {}: {} nodes, {} cells, {}\n", kind, solid.data().name, solid.elements().n_nodes(),
+                   solid.elements().n_cells(), word_of(solid.data().formulation));
   text +=
-      base::format("    free positions {}, {}, element pressures {}\n", unknowns.n_free_positions(),
+      base::format("    free positions {}{}, {}, element pressures {}\n", unknowns.n_free_positions(), ties_text(solid),
                    potentials_text(unknowns), solid.has_pressures() ? base::format("{}", solid.n_pressures()) : "no");
   text += base::format("    viscous terms {}, mass {}\n", yes_no(solid.is_viscous()),
                        scene.dynamics ? "yes" : "no (statics)");
@@ -93,6 +106,40 @@ std::string solid_text(const scene::Scene& scene, const fem::Solid& solid, const
                          size.matrix_bytes / mebi, size.factor_bytes / mebi);
   }
   return text;
+}
+
+/// Sums over several solids, and what a formulation with potentials and three fields of every cell would carry.
+std::string solids_text(const build::BuiltModel& built) {
+  if (built.solids.size() < 2) return {};
+  Eigen::Index nodes = 0, cells = 0, free = 0, tied = 0, prescribed = 0, potentials = 0, pressures = 0;
+  bool fields = false;
+  for (const fem::Solid* solid : built.solids) {
+    nodes += solid->elements().n_nodes();
+    cells += solid->elements().n_cells();
+    free += solid->unknowns().n_free_positions();
+    tied += 3 * static_cast<Eigen::Index>(solid->data().ties.size());
+    prescribed += static_cast<Eigen::Index>(solid->data().displacements.size());
+    potentials += solid->unknowns().n_free_potentials();
+    pressures += solid->n_pressures();
+    fields = fields || solid->unknowns().has_field();
+  }
+  std::string text = base::format(
+      "  all {} meshes: {} nodes, {} cells; unknowns {} = {} positions + {} potentials + {} pressures; {} eliminated "
+      "by "
+      "ties, {} prescribed\n",
+      built.solids.size(), nodes, cells, free + potentials + pressures, free, potentials, pressures, tied, prescribed);
+  if (fields) {
+    text += base::format("    with all positions, potentials and three fields a cell they would be {}\n",
+                         4 * nodes + 3 * cells);
+  }
+  return text;
+}
+
+std::string muscles_text(const build::Assembled& assembled) {
+  const std::size_t lumped = assembled.muscles - assembled.meshed_muscles;
+  if (assembled.meshed_muscles == 0) return base::format("{} (lumped)", lumped);
+  if (lumped == 0) return base::format("{} (fe)", assembled.meshed_muscles);
+  return base::format("{} ({} lumped, {} fe)", assembled.muscles, lumped, assembled.meshed_muscles);
 }
 
 /// Doubles of the results, of the tangent and of the states.
@@ -126,10 +173,10 @@ std::string summary(const scene::Scene& scene, const build::BuiltModel& built) {
   const multibody::TreeManifold& manifold = *built.manifold;
   const build::Assembled& assembled = built.assembled;
   std::string text = base::format("{}\n", scene.title.empty() ? "(no title)" : scene.title);
-  text += base::format(
-      "  bodies {}, joints {}, muscles {} (lumped), isolated actuators {}, springs {}, loads {}, joint forces {}\n",
-      scene.bodies.size(), scene.joints.size(), assembled.muscles, assembled.free_actuators, assembled.springs,
-      assembled.loads, assembled.joint_forces);
+  text +=
+      base::format("  bodies {}, joints {}, muscles {}, isolated actuators {}, springs {}, loads {}, joint forces {}\n",
+                   scene.bodies.size(), scene.joints.size(), muscles_text(assembled), assembled.free_actuators,
+                   assembled.springs, assembled.loads, assembled.joint_forces);
   text += chains_text(scene, built);
   const bool mechanism = manifold.n_v() > 0 || built.solids.empty();
   if (mechanism) {
@@ -146,6 +193,7 @@ std::string summary(const scene::Scene& scene, const build::BuiltModel& built) {
     text += solid_text(scene, *solid, size);
     of_solids += size.matrix_bytes + size.factor_bytes;
   }
+  text += solids_text(built);
   if (mechanism) {
     text += base::format("  linear solver {}\n", manifold.make_solver(*built.model->pattern, built.linear)->name());
   }

@@ -99,10 +99,41 @@ void SceneCheck::check_muscle_model(Entry<Muscle>& entry) {
   check_muscle_control(entry, *options);
   const Entry<Material>* material = scene_.materials.find(entry.value.material.name);
   if (material == nullptr || failed({"materials", material->name, "elastic"})) return;
-  if (!std::holds_alternative<NeoHookean>(material->value.elastic.law)) {
+  if constexpr (std::is_same_v<Model, MeshedMuscle>) {
+    check_meshed_muscle(entry, *options, material->value.elastic);
+  } else if (!std::holds_alternative<NeoHookean>(material->value.elastic.law)) {
     error({"muscles", entry.name, "material"}, "model '" + std::string(Model::name) +
                                                    "' needs a material with elastic model neo_hookean, not '" +
                                                    material->name + "'");
+  }
+}
+
+void SceneCheck::check_meshed_muscle(const Entry<Muscle>& entry, const MeshedMuscle& mesh, const Elastic& elastic) {
+  const std::string_view name = entry.name;
+  if (entry.value.ends == MuscleEnds::free) {
+    error({"muscles", name, "ends"},
+          "model 'fe' has both ends attached; an isolated actuator of finite elements is a solid with conditions");
+  }
+  if (scene_.solids.find(name) != nullptr) {
+    error({"muscles", name}, "a solid has the same name: call one of them otherwise, to tell their results apart");
+  }
+  if (failed({"muscles", name, "fe"})) return;
+  if (mesh.section_axis) check_direction({"muscles", name, "fe", "section_axis"}, *mesh.section_axis);
+  const std::string why_no_mesh = mesh.why_no_mesh(entry.value.section);
+  if (!why_no_mesh.empty()) error({"muscles", name, "fe", "section_cells"}, why_no_mesh);
+  const Entry<Material>& material = *scene_.materials.find(entry.value.material.name);
+  const std::string why_unfit =
+      scene::why_unfit(formulation_of(mesh.formulation, material.value), elastic, material.name);
+  if (!why_unfit.empty()) error({"muscles", name, "fe", "formulation"}, why_unfit);
+  const bool two_constants =
+      std::holds_alternative<NeoHookean>(elastic.law) || std::holds_alternative<BonetWood>(elastic.law);
+  if (two_constants) return;
+  for (const auto& [key, given] : {std::pair("young", mesh.replacements.young.has_value()),
+                                   std::pair("mu", mesh.replacements.shear_modulus.has_value())}) {
+    if (given) {
+      error({"muscles", name, "fe", key},
+            "replaces a constant of neo_hookean or bonet_wood; material '" + material.name + "' has another law");
+    }
   }
 }
 
@@ -110,7 +141,7 @@ void SceneCheck::muscles() {
   for (Entry<Muscle>& entry : scene_.muscles) {
     if (failed({"muscles", entry.name, "model"})) continue;
     check_muscle_ends(entry);
-    base::for_each_type(muscles::MuscleModels{}, [&]<class Model>(std::type_identity<Model>) {
+    base::for_each_type(MuscleModels{}, [&]<class Model>(std::type_identity<Model>) {
       if (entry.value.model == muscle_model<Model>) check_muscle_model<Model>(entry);
     });
   }

@@ -44,6 +44,7 @@ class SceneCheck {
   /// The options of its model, which are given the defaults if the scene says nothing.
   template <class Model>
   void check_muscle_model(Entry<Muscle>& muscle);
+  void check_meshed_muscle(const Entry<Muscle>& muscle, const MeshedMuscle& mesh, const Elastic& elastic);
   template <class Model>
   void check_muscle_control(const Entry<Muscle>& muscle, const Model& model);
   void check_load(const Entry<Load>& load);
