@@ -53,6 +53,9 @@ class SubstructureSolver {
   virtual bool factorise(const IntervalPoint& at) = 0;
   /// Negative pivots beyond those that the potentials must have: 0 at a stable equilibrium.
   virtual int unstable_directions() const = 0;
+  /// Carries the factor along with the bodies that the part is tied to, to their directors in q (n_q): what follows
+  /// then has a better matrix for the present configuration.
+  virtual void turn(const Eigen::VectorXd& q) { static_cast<void>(q); }
   /// Adds the stiffness of the eliminated part to the blocks of the bodies.
   virtual void add_condensed(math::BlockMatrix& K) const = 0;
   /// Solves for the slices with the bodies held: `bracket` (n_q) is the residual of the momentum balance, to whose rows

@@ -52,6 +52,10 @@ bool SubstructureSet::factorise(const IntervalPoint& at) {
   return factorised_;
 }
 
+void SubstructureSet::turn(const Eigen::VectorXd& q) {
+  for (auto& solver : solvers_) solver->turn(q);
+}
+
 void SubstructureSet::eliminate(Eigen::VectorXd& bracket, const Eigen::VectorXd& h, math::BlockMatrix& K) {
   for (auto& solver : solvers_) {
     solver->add_condensed(K);

@@ -30,6 +30,8 @@ class SubstructureSet {
   /// False if a matrix is singular.
   bool factorise(const IntervalPoint& at);
   bool factorised() const { return factorised_; }
+  /// See SubstructureSolver::turn.
+  void turn(const Eigen::VectorXd& q);
   /// Eliminates the parts: their stiffness goes to K, their response to the rows of the bodies in `bracket`.
   void eliminate(Eigen::VectorXd& bracket, const Eigen::VectorXd& h, math::BlockMatrix& K);
   /// Completes dq and dy for the motion of the bodies in dq.

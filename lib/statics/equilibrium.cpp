@@ -87,6 +87,7 @@ void EquilibriumSolver::project_bracket() {
 void EquilibriumSolver::linearise(const StaticState& state, std::span<const double> u) {
   evaluate(state, u);
   model_.tangent(point(state, u), model::TangentWeights::stiffness(), K_);
+  total_ = bracket_;
   if (!parts_.empty()) {
     singular_ = !parts_.factorise(point(state, u));
     if (!singular_) parts_.eliminate(bracket_, forces_.stage, K_);
@@ -95,7 +96,7 @@ void EquilibriumSolver::linearise(const StaticState& state, std::span<const doub
   manifold_.project_tangent(*frame_, *frame_, K_, A_);
   model_.rate_tangent(point(state, u), model::TangentWeights::stiffness(), diagonal_);
   A_.diagonal() += diagonal_;
-  manifold_.add_curvature(*frame_, bracket_, state.multipliers, A_);
+  manifold_.add_curvature(*frame_, total_, state.multipliers, A_);
   manifold_.project_constraints(*frame_, loop_basis(), B_);
 }
 

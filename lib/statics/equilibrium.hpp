@@ -97,6 +97,7 @@ class EquilibriumSolver {
   Eigen::VectorXd zero_;
   Eigen::VectorXd force_;
   Eigen::VectorXd bracket_;
+  Eigen::VectorXd total_;  // the bracket before parts are eliminated: all forces on the bodies
   Eigen::VectorXd r_;
   Eigen::VectorXd diagonal_;  // derivatives of the forces on the minimal rates
   Eigen::VectorXd gaps_;      // of all loop rows

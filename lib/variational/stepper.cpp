@@ -170,6 +170,7 @@ double Stepper::solve(const State& state, std::span<const double> u, StepReport&
   }
   if (!parts_.empty()) {
     if ((wants_factor_ || !parts_.factorised()) && !factorise_parts(at, report)) return failed;
+    parts_.turn(q_);
     parts_.eliminate(bracket_, forces_.stage, K_);
     project_bracket();
   }

@@ -95,4 +95,27 @@ void SolidFactor::solve(Eigen::VectorXd& x) {
   }
 }
 
+void SolidFactor::solve_columns(Eigen::MatrixXd& x) {
+  const auto n = static_cast<Eigen::Index>(electrodes_.size());
+  commons_.resize(n, x.cols());
+  for (Eigen::Index e = 0; e < n; ++e) {
+    commons_.row(e).setZero();
+    for (const int node : electrodes_[static_cast<std::size_t>(e)]) {
+      commons_.row(e) += x.row(static_cast<Eigen::Index>(node) * matrix_.block_size() + 3);
+    }
+  }
+  for (const Eigen::Index i : masked_) x.row(i).setZero();
+  factor_.solve_columns(x);
+  for (const Eigen::Index i : masked_) x.row(i).setZero();
+  if (electrodes_.empty()) return;
+  commons_.noalias() -= columns_.transpose() * x;
+  commons_ = (inverse_schur_ * commons_).eval();
+  x.noalias() -= responses_ * commons_;
+  for (Eigen::Index e = 0; e < n; ++e) {
+    for (const int node : electrodes_[static_cast<std::size_t>(e)]) {
+      x.row(static_cast<Eigen::Index>(node) * matrix_.block_size() + 3) = commons_.row(e);
+    }
+  }
+}
+
 }  // namespace muldi::fem

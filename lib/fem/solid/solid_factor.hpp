@@ -31,6 +31,8 @@ class SolidFactor {
   /// x = A^-1 x over all unknowns of the nodes (n_nodes block_size). At the nodes of a floating electrode the entries
   /// of x are summed, and the result is common to them; masked entries come back as 0.
   void solve(Eigen::VectorXd& x);
+  /// The same for every column.
+  void solve_columns(Eigen::MatrixXd& x);
   const math::LdltSize& size() const { return analysis_.size(); }
 
  private:
@@ -48,6 +50,7 @@ class SolidFactor {
   Eigen::MatrixXd inverse_schur_;
   Eigen::VectorXd indicator_;
   Eigen::VectorXd common_;
+  Eigen::MatrixXd commons_;
   int n_negative_ = 0;
 };
 

@@ -42,6 +42,8 @@ SolidSolver::SolidSolver(const Solid& solid, model::Linearisation kind)
       pattern_(solid.elements().n_nodes(), block_size_of(solid, kind), solid.elements().cells()),
       slots_(solid.elements().slots_in(pattern_)),
       factor_(pattern_, solid.unknowns().mask(), electrodes_in(solid, kind)),
+      turning_(solid.data()),
+      responses_(solid.data(), factor_.matrix().n_rows(), pattern_.block_size(), solid.n_pressures()),
       expected_negative_(kind == model::Linearisation::velocity ? 0 : negative_potentials(solid)) {
   const Eigen::Index n_nodes = solid.elements().n_nodes();
   rhs_ = Eigen::VectorXd::Zero(factor_.matrix().n_rows());
@@ -140,6 +142,8 @@ bool SolidSolver::factorise(const model::IntervalPoint& at) {
   }
   assemble(at);
   factorised_ = factor_.factorise();
+  turning_.keep(at.q1);
+  if (factorised_ && !responses_.empty()) respond();
   return factorised_;
 }
 
@@ -155,17 +159,76 @@ void SolidSolver::back_substitute() {
   }
 }
 
+void SolidSolver::respond() {
+  Eigen::MatrixXd& W = responses_.displacements();
+  responses_.impose();
+  if (exact() && solid_.is_incompressible()) {
+    respond_exactly();
+  } else {
+    imposed_ = W;
+    for (Eigen::Index j = 0; j < W.cols(); ++j) factor_.matrix().multiply(imposed_.col(j), W.col(j));
+    factor_.solve_columns(W);
+    W = imposed_ - W;
+    for (Eigen::Index j = 0; j < W.cols() && solid_.has_pressures(); ++j) {
+      for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
+        dx_.segment<3>(3 * node) = W.col(j).segment<3>(pattern_.block_size() * node);
+      }
+      lagged_.project(solid_.elements(), dx_, dp_);
+      responses_.pressures().col(j) = coupling_.cwiseProduct(dp_).cwiseQuotient(compliance_);
+    }
+  }
+  responses_.condense(factor_.matrix());
+}
+
+void SolidSolver::respond_exactly() {
+  const Eigen::Index block = pattern_.block_size();
+  Eigen::MatrixXd& W = responses_.displacements();
+  for (Eigen::Index j = 0; j < W.cols(); ++j) {
+    factor_.matrix().multiply(W.col(j), rhs_);
+    for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
+      dx_.segment<3>(3 * node) = W.col(j).segment<3>(block * node);
+      force_.segment<3>(3 * node) = -rhs_.segment<3>(block * node);
+      if (block == 4) rhs_[4 * node + potential_bit] *= -1.0;
+    }
+    lagged_.project(solid_.elements(), dx_, rows_);
+    rows_ = -coupling_.cwiseProduct(rows_);
+    // The matrix holds the eliminated pressures, which solve() adds once more.
+    dp_ = -coupling_.cwiseProduct(rows_).cwiseQuotient(compliance_);
+    lagged_.add_gradients(solid_.elements(), dp_, force_);
+    solve();
+    for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
+      W.col(j).segment<3>(block * node) += total_x_.segment<3>(3 * node);
+      if (block == 4) W(4 * node + potential_bit, j) += total_phi_[node];
+    }
+    responses_.pressures().col(j) = total_p_;
+  }
+}
+
 void SolidSolver::reduce(Eigen::VectorXd& bracket, const Eigen::VectorXd& h) {
   const Eigen::Index block = pattern_.block_size();
   force_ = solid_.positions(bracket);
+  if (turning_.is_turned()) turning_.back(force_);
+  if (solid_.has_pressures()) rows_ = solid_.pressures(h);
+  for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
+    if (block == 4) rhs_[4 * node + potential_bit] = potential_rows_ * h[solid_.y_slice().first + node];
+  }
+  if (!responses_.empty()) {
+    for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
+      rhs_.segment<3>(block * node) = force_.segment<3>(3 * node);
+    }
+    responses_.add_to_bodies(turning_, rhs_, rows_, bracket);
+  }
+  solve();
+}
+
+void SolidSolver::solve() {
+  const Eigen::Index block = pattern_.block_size();
   if (solid_.has_pressures()) {
-    rows_ = solid_.pressures(h);
     dp_ = coupling_.cwiseProduct(rows_).cwiseQuotient(compliance_);
     lagged_.add_gradients(solid_.elements(), dp_, force_);
   }
   for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
     rhs_.segment<3>(block * node) = force_.segment<3>(3 * node);
-    if (block == 4) rhs_[4 * node + potential_bit] = potential_rows_ * h[solid_.y_slice().first + node];
   }
   back_substitute();
   total_x_ = dx_;
@@ -199,7 +262,21 @@ void SolidSolver::refine() {
   }
 }
 
+void SolidSolver::add_motion_of_bodies(const Eigen::VectorXd& dq) {
+  const Eigen::Index block = pattern_.block_size();
+  responses_.read_bodies(turning_, dq);
+  rhs_.setZero();
+  responses_.add_displacements(rhs_);
+  for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
+    total_x_.segment<3>(3 * node) += rhs_.segment<3>(block * node);
+    if (block == 4) total_phi_[node] += rhs_[4 * node + potential_bit];
+  }
+  if (solid_.has_pressures()) responses_.add_pressures(total_p_);
+}
+
 void SolidSolver::expand(Eigen::VectorXd& dq, Eigen::VectorXd& dy) {
+  if (!responses_.empty()) add_motion_of_bodies(dq);
+  if (turning_.is_turned()) turning_.forth(total_x_);
   solid_.positions(dq) = total_x_;
   if (dy.size() == 0) return;
   if (solid_.n_potentials() > 0) solid_.potentials(dy) = total_phi_;

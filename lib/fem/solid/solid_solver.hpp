@@ -5,6 +5,8 @@
 /// to the matrix of positions and potentials; the incompressible formulations, D = 0, take a finite D_e and repeat. The
 /// gradients g_e are those of the factorisation, in every use of the factor (numerics 1.4; a newer one diverges).
 #include "fem/solid/solid.hpp"
+#include "fem/solid/tied_responses.hpp"
+#include "fem/solid/turning.hpp"
 
 namespace muldi::fem {
 
@@ -16,7 +18,8 @@ class SolidSolver final : public model::SubstructureSolver {
 
   bool factorise(const model::IntervalPoint& at) override;
   int unstable_directions() const override;
-  void add_condensed(math::BlockMatrix&) const override {}
+  void turn(const Eigen::VectorXd& q) override { turning_.turn_to(q); }
+  void add_condensed(math::BlockMatrix& K) const override { responses_.add_condensed(turning_, K); }
   void reduce(Eigen::VectorXd& bracket, const Eigen::VectorXd& h) override;
   void expand(Eigen::VectorXd& dq, Eigen::VectorXd& dy) override;
   std::string name() const override;
@@ -25,8 +28,14 @@ class SolidSolver final : public model::SubstructureSolver {
  private:
   void weigh_pressures(const model::IntervalPoint& at);
   void assemble(const model::IntervalPoint& at);
+  /// Displacements, potentials and pressures (total_...) for the rows force_, rows_ and the potentials in rhs_.
+  void solve();
   void back_substitute();
+  /// Columns of the responses, all at once or each with its volume kept exactly.
+  void respond();
+  void respond_exactly();
   void refine();
+  void add_motion_of_bodies(const Eigen::VectorXd& dq);
   bool exact() const { return kind_ != model::Linearisation::step; }
 
   const Solid& solid_;
@@ -35,6 +44,8 @@ class SolidSolver final : public model::SubstructureSolver {
   math::SymmetricBlockPattern pattern_;
   std::vector<std::int32_t> slots_;
   SolidFactor factor_;
+  Turning turning_;
+  TiedResponses responses_;
   int expected_negative_ = 0;
   double potential_rows_ = 1.0;  // factor of the rows of the potentials
   Volumes lagged_;
@@ -43,6 +54,7 @@ class SolidSolver final : public model::SubstructureSolver {
   Eigen::VectorXd compliance_;  // D_e of the factor
   Eigen::VectorXd curvature_;
   Eigen::VectorXd rhs_;
+  Eigen::MatrixXd imposed_;
   Eigen::VectorXd dx_;
   Eigen::VectorXd rows_;
   Eigen::VectorXd dp_;

@@ -1,0 +1,75 @@
+#include "fem/solid/tied_responses.hpp"
+
+namespace muldi::fem {
+
+TiedResponses::TiedResponses(const SolidDescription& data, Eigen::Index n_rows, int block, Eigen::Index n_pressures)
+    : data_(&data), ties_(data), block_(block) {
+  const Eigen::Index n = ties_.n_columns();
+  if (n == 0) return;
+  W_ = Eigen::MatrixXd::Zero(n_rows, n);
+  KW_ = W_;
+  P_ = Eigen::MatrixXd::Zero(n_pressures, n);
+  S_ = Eigen::MatrixXd::Zero(n, n);
+  of_bodies_ = Eigen::VectorXd::Zero(n);
+}
+
+void TiedResponses::impose() {
+  W_.setZero();
+  for (int j = 0; j < n_columns(); ++j) {
+    ties_.each_entry(j, [&](int node, int component, double value) {
+      W_(static_cast<Eigen::Index>(block_) * node + component, j) = value;
+    });
+  }
+}
+
+void TiedResponses::condense(const math::SymmetricBlockMatrix& K) {
+  for (Eigen::Index j = 0; j < W_.cols(); ++j) K.multiply(W_.col(j), KW_.col(j));
+  S_.noalias() = W_.transpose() * KW_;
+  S_ = (0.5 * (S_ + S_.transpose())).eval();
+}
+
+void TiedResponses::add_condensed(const Turning& turning, math::BlockMatrix& K) const {
+  for (int a = 0; a < ties_.n_hosts(); ++a) {
+    for (int b = 0; b < ties_.n_hosts(); ++b) {
+      auto block = K.block(data_->hosts[static_cast<std::size_t>(a)].pattern_node,
+                           data_->hosts[static_cast<std::size_t>(b)].pattern_node);
+      const auto S = S_.block<host_size, host_size>(host_size * static_cast<Eigen::Index>(a),
+                                                    host_size * static_cast<Eigen::Index>(b));
+      if (!turning.is_turned()) {
+        block += S;
+        continue;
+      }
+      for (int i = 0; i < host_size; i += 3) {
+        for (int j = 0; j < host_size; j += 3) {
+          block.block<3, 3>(i, j) += turning.of_host(a) * S.block<3, 3>(i, j) * turning.of_host(b).transpose();
+        }
+      }
+    }
+  }
+}
+
+void TiedResponses::add_to_bodies(const Turning& turning, const Eigen::VectorXd& b, const Eigen::VectorXd& h,
+                                  Eigen::VectorXd& rows) {
+  of_bodies_.noalias() = W_.transpose() * b;
+  if (P_.rows() > 0) of_bodies_.noalias() += P_.transpose() * h;
+  for (int host = 0; host < ties_.n_hosts(); ++host) {
+    const Eigen::Index first = data_->hosts[static_cast<std::size_t>(host)].first;
+    for (int i = 0; i < host_size; i += 3) {
+      const Eigen::Vector3d part = of_bodies_.segment<3>(host_size * static_cast<Eigen::Index>(host) + i);
+      rows.segment<3>(first + i) += turning.is_turned() ? Eigen::Vector3d(turning.of_host(host) * part) : part;
+    }
+  }
+}
+
+void TiedResponses::read_bodies(const Turning& turning, const Eigen::VectorXd& dq) {
+  for (int host = 0; host < ties_.n_hosts(); ++host) {
+    const Eigen::Index first = data_->hosts[static_cast<std::size_t>(host)].first;
+    for (int i = 0; i < host_size; i += 3) {
+      const Eigen::Vector3d part = dq.segment<3>(first + i);
+      of_bodies_.segment<3>(host_size * static_cast<Eigen::Index>(host) + i) =
+          turning.is_turned() ? Eigen::Vector3d(turning.of_host(host).transpose() * part) : part;
+    }
+  }
+}
+
+}  // namespace muldi::fem
