@@ -44,7 +44,8 @@ struct IncrementSize {
 };
 
 /// Factorised linearisation of one substructure. Vectors are those of the whole system; a solver reads and writes the
-/// slices of its part and, where the part is tied to bodies, the entries of these.
+/// slices of its part and, where the part is tied to bodies, reads the entries of these. All but the two that add to
+/// what parts share may run beside those of other parts.
 class SubstructureSolver {
  public:
   virtual ~SubstructureSolver() = default;
@@ -56,11 +57,13 @@ class SubstructureSolver {
   /// Carries the factor along with the bodies that the part is tied to, to their directors in q (n_q): what follows
   /// then has a better matrix for the present configuration.
   virtual void turn(const Eigen::VectorXd& q) { static_cast<void>(q); }
+  /// Solves for the slices with the bodies held: `bracket` (n_q) is the residual of the momentum balance, `h` (n_y)
+  /// that of the stage rows.
+  virtual void reduce(const Eigen::VectorXd& bracket, const Eigen::VectorXd& h) = 0;
+  /// Adds what the last `reduce` answered to the rows of the bodies (n_q).
+  virtual void add_response(Eigen::VectorXd& bracket) const = 0;
   /// Adds the stiffness of the eliminated part to the blocks of the bodies.
   virtual void add_condensed(math::BlockMatrix& K) const = 0;
-  /// Solves for the slices with the bodies held: `bracket` (n_q) is the residual of the momentum balance, to whose rows
-  /// of the bodies the response is added; `h` (n_y) the residual of the stage rows.
-  virtual void reduce(Eigen::VectorXd& bracket, const Eigen::VectorXd& h) = 0;
   /// Completes dq and dy for the motion of the bodies that dq holds.
   virtual void expand(Eigen::VectorXd& dq, Eigen::VectorXd& dy) = 0;
   virtual std::string name() const = 0;
@@ -73,8 +76,25 @@ struct SolverSize {
   double factor_bytes = 0.0;
 };
 
+/// Part of IntervalForces that all parts share.
+struct PartLimits {
+  double margin = std::numeric_limits<double>::infinity();
+  double violation = 0.0;
+
+  /// The smaller margin, or one that is no number; the larger violation.
+  void add_to(IntervalForces& out) const {
+    if (!(margin >= out.margin)) out.margin = margin;
+    if (!(violation <= out.violation)) out.violation = violation;
+  }
+};
+
 class Substructure : public IntervalTerm {
  public:
+  /// Adds dL/dq + f, dL/dv, what acts at the ends, and the stage rows, all in the slices of the part: it may run beside
+  /// other parts.
+  virtual PartLimits add_part_forces(const IntervalPoint& at, IntervalForces& out) const = 0;
+  void add_forces(const IntervalPoint& at, IntervalForces& out) const final { add_part_forces(at, out).add_to(out); }
+
   const Slice& q_slice() const { return q_; }
   const Slice& y_slice() const { return y_; }
   /// Where the slices begin; once, while the model is built.

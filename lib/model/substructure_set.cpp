@@ -6,6 +6,7 @@ namespace muldi::model {
 
 SubstructureSet::SubstructureSet(const Model& model, Linearisation kind, const std::string& name) : model_(model) {
   for (const auto& part : model.substructures) solvers_.push_back(part->make_solver(kind, name));
+  done_.resize(solvers_.size());
 }
 
 bool SubstructureSet::moves() const {
@@ -14,11 +15,11 @@ bool SubstructureSet::moves() const {
 }
 
 void SubstructureSet::place(const Placement& at, Eigen::VectorXd& q, Eigen::VectorXd& y) const {
-  for (const auto& part : model_.substructures) part->place(at, q, y);
+  model_.each_part([&](const Substructure& part, std::size_t) { part.place(at, q, y); });
 }
 
 void SubstructureSet::settle_stage(const IntervalPoint& at, Eigen::VectorXd& y) const {
-  for (const auto& part : model_.substructures) part->settle_stage(at, y);
+  model_.each_part([&](const Substructure& part, std::size_t) { part.settle_stage(at, y); });
 }
 
 void SubstructureSet::keep_free(Eigen::VectorXd& rows) const {
@@ -48,23 +49,25 @@ double SubstructureSet::largest_row(const Eigen::VectorXd& rows) const {
 }
 
 bool SubstructureSet::factorise(const IntervalPoint& at) {
-  factorised_ = std::all_of(solvers_.begin(), solvers_.end(), [&](auto& solver) { return solver->factorise(at); });
+  model_.each_part([&](const Substructure&, std::size_t i) { done_[i] = solvers_[i]->factorise(at) ? 1 : 0; });
+  factorised_ = std::all_of(done_.begin(), done_.end(), [](char done) { return done != 0; });
   return factorised_;
 }
 
 void SubstructureSet::turn(const Eigen::VectorXd& q) {
-  for (auto& solver : solvers_) solver->turn(q);
+  model_.each_part([&](const Substructure&, std::size_t i) { solvers_[i]->turn(q); });
 }
 
 void SubstructureSet::eliminate(Eigen::VectorXd& bracket, const Eigen::VectorXd& h, math::BlockMatrix& K) {
-  for (auto& solver : solvers_) {
+  model_.each_part([&](const Substructure&, std::size_t i) { solvers_[i]->reduce(bracket, h); });
+  for (const auto& solver : solvers_) {
+    solver->add_response(bracket);
     solver->add_condensed(K);
-    solver->reduce(bracket, h);
   }
 }
 
 void SubstructureSet::complete(Eigen::VectorXd& dq, Eigen::VectorXd& dy) {
-  for (auto& solver : solvers_) solver->expand(dq, dy);
+  model_.each_part([&](const Substructure&, std::size_t i) { solvers_[i]->expand(dq, dy); });
 }
 
 int SubstructureSet::unstable_directions() const {

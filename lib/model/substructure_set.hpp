@@ -45,6 +45,7 @@ class SubstructureSet {
  private:
   const Model& model_;
   std::vector<std::unique_ptr<SubstructureSolver>> solvers_;
+  std::vector<char> done_;
   bool factorised_ = false;
 };
 

@@ -106,4 +106,30 @@ TiedSystem hinge_with_muscle(const Muscle& how) {
   return system;
 }
 
+TiedSystem chain_with_muscles(int n_joints, Muscle how) {
+  constexpr double length = 36.0;
+  constexpr double period = 46.0;
+  TiedSystem system;
+  system.rigid.length = period * n_joints;
+  for (int i = 0; i < n_joints; ++i) {
+    const double foot = period * i;
+    const int body = system.rigid.add_body(20.0, Vector3d(2500.0, 2500.0, 3000.0),
+                                           {.position = Vector3d(0.0, 0.0, foot + length + 5.0)});
+    system.rigid.connect(multibody::Revolute::pattern, {body - 1, body}, Vector3d(0.0, 0.0, foot + 0.5 * length),
+                         math::triad_about(Vector3d::UnitY()));
+  }
+  for (int i = 0; i < n_joints; ++i) {
+    const double foot = period * i;
+    for (int side = 0; side < 2; ++side) {
+      how.field = side;
+      fem::SolidDescription bar = muscle((side == 0 ? "right" : "left") + std::to_string(i), how,
+                                         side == 0 ? 12.0 : -12.0, {foot, foot + length});
+      system.tie(bar, plane(2, foot), i - 1);
+      system.tie(bar, plane(2, foot + length), i);
+      system.solids.push_back(bar);
+    }
+  }
+  return system;
+}
+
 }  // namespace muldi::test

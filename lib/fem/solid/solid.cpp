@@ -111,7 +111,8 @@ void Solid::settle_stage(const model::IntervalPoint& at, Eigen::VectorXd& y) con
   potential_solver_->solve(positions(at.q), charge_, potentials(y));
 }
 
-void Solid::add_forces(const model::IntervalPoint& at, model::IntervalForces& out) const {
+model::PartLimits Solid::add_part_forces(const model::IntervalPoint& at, model::IntervalForces& out) const {
+  model::PartLimits limits;
   const bool whole = at.y != nullptr;
   force_.setZero();
   momentum_.setZero();
@@ -122,10 +123,9 @@ void Solid::add_forces(const model::IntervalPoint& at, model::IntervalForces& ou
     loads_.surface_charge(at.u, charge_);
     targets.charge = charge_.data();
   }
-  const double margin = elements_.forces(where, targets);
-  if (!(margin >= out.margin)) out.margin = margin;
+  limits.margin = elements_.forces(where, targets);
   if (where.v != nullptr) positions(out.momentum) += momentum_;
-  if (!whole) return;
+  if (!whole) return limits;
   if (where.phi != nullptr) {
     potential_scale_ = std::max(potential_scale_, potentials(*at.y).lpNorm<Eigen::Infinity>());
     potentials(out.stage) = -charge_;
@@ -133,19 +133,21 @@ void Solid::add_forces(const model::IntervalPoint& at, model::IntervalForces& ou
   }
   positions(out.force) -= force_;
   if (loads_.any()) loads_.add(positions(at.q), at.u, positions(out.force));
-  if (!has_pressures()) return;
+  if (!has_pressures()) return limits;
   if (at.dt > 0.0) {
-    add_volume_step(at, out);
+    add_volume_step(at, out, limits);
   } else {
-    add_volume_rest(at, out);
+    add_volume_rest(at, out, limits);
   }
+  return limits;
 }
 
 double Solid::pressure_weight(const model::IntervalPoint& at) const {
   return is_incompressible() && !at.first ? at.dt : 0.5 * at.dt;
 }
 
-void Solid::add_volume_step(const model::IntervalPoint& at, model::IntervalForces& out) const {
+void Solid::add_volume_step(const model::IntervalPoint& at, model::IntervalForces& out,
+                            model::PartLimits& limits) const {
   const auto p = pressures(*at.y);
   const Volumes& begin = volumes_at(positions(at.q0));
   const Volumes& end = volumes_at(positions(at.q1));
@@ -155,26 +157,27 @@ void Solid::add_volume_step(const model::IntervalPoint& at, model::IntervalForce
   auto rows = pressures(out.stage);
   if (is_incompressible()) {
     rows = -c * V_.cwiseProduct((end.J.array() - 1.0).matrix());
-    out.margin = std::min(out.margin, end.J.minCoeff());
-    out.violation = std::max(out.violation, (end.J.array() - 1.0).abs().maxCoeff());
+    limits.margin = std::min(limits.margin, end.J.minCoeff());
+    limits.violation = std::max(limits.violation, (end.J.array() - 1.0).abs().maxCoeff());
     return;
   }
   end.add_gradients(elements_, weight_, positions(out.end));
   for (int cell = 0; cell < elements_.n_cells(); ++cell) {
     const double J = 0.5 * (begin.J[cell] + end.J[cell]);
-    out.margin = std::min(out.margin, J);
+    limits.margin = std::min(limits.margin, J);
     const Dilation law = dilation(cell, J);
     rows[cell] = -at.dt * V_[cell] * (law.pressure - p[cell]) / law.stiffness;
   }
 }
 
-void Solid::add_volume_rest(const model::IntervalPoint& at, model::IntervalForces& out) const {
+void Solid::add_volume_rest(const model::IntervalPoint& at, model::IntervalForces& out,
+                            model::PartLimits& limits) const {
   const auto p = pressures(*at.y);
   const Volumes& here = volumes_at(positions(at.q));
   weight_ = -V_.cwiseProduct(p);
   here.add_gradients(elements_, weight_, positions(out.force));
   auto rows = pressures(out.stage);
-  out.margin = std::min(out.margin, here.J.minCoeff());
+  limits.margin = std::min(limits.margin, here.J.minCoeff());
   for (int cell = 0; cell < elements_.n_cells(); ++cell) {
     if (is_incompressible()) {
       rows[cell] = -V_[cell] * (here.J[cell] - 1.0);

@@ -80,6 +80,7 @@ class Solid final : public model::Substructure {
   Eigen::VectorXd charge_rows(const Eigen::Ref<const Eigen::VectorXd>& x, const Eigen::VectorXd& phi) const;
 
   // Substructure
+  model::PartLimits add_part_forces(const model::IntervalPoint& at, model::IntervalForces& out) const override;
   void start(Eigen::VectorXd& q, Eigen::VectorXd& y) const override;
   void place(const model::Placement& at, Eigen::VectorXd& q, Eigen::VectorXd& y) const override;
   void settle_stage(const model::IntervalPoint& at, Eigen::VectorXd& y) const override;
@@ -100,7 +101,6 @@ class Solid final : public model::Substructure {
   // IntervalTerm
   void request(model::PatternRequest& pattern) const override;
   void bind(const math::BlockPattern&) override {}
-  void add_forces(const model::IntervalPoint& at, model::IntervalForces& out) const override;
   void add_tangent(const model::IntervalPoint&, const model::TangentWeights&, math::BlockMatrix&) const override {}
   void add_control_force(const model::IntervalPoint& at, int control, Eigen::VectorXd& out) const override;
   model::IntervalWork work(const model::IntervalPoint& at) const override;
@@ -109,8 +109,8 @@ class Solid final : public model::Substructure {
   std::string inadmissible(const Eigen::VectorXd& q) const override;
 
  private:
-  void add_volume_step(const model::IntervalPoint& at, model::IntervalForces& out) const;
-  void add_volume_rest(const model::IntervalPoint& at, model::IntervalForces& out) const;
+  void add_volume_step(const model::IntervalPoint& at, model::IntervalForces& out, model::PartLimits& limits) const;
+  void add_volume_rest(const model::IntervalPoint& at, model::IntervalForces& out, model::PartLimits& limits) const;
 
   SolidDescription data_;
   ElementSet elements_;

@@ -204,7 +204,7 @@ void SolidSolver::respond_exactly() {
   }
 }
 
-void SolidSolver::reduce(Eigen::VectorXd& bracket, const Eigen::VectorXd& h) {
+void SolidSolver::reduce(const Eigen::VectorXd& bracket, const Eigen::VectorXd& h) {
   const Eigen::Index block = pattern_.block_size();
   force_ = solid_.positions(bracket);
   if (turning_.is_turned()) turning_.back(force_);
@@ -216,7 +216,7 @@ void SolidSolver::reduce(Eigen::VectorXd& bracket, const Eigen::VectorXd& h) {
     for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
       rhs_.segment<3>(block * node) = force_.segment<3>(3 * node);
     }
-    responses_.add_to_bodies(turning_, rhs_, rows_, bracket);
+    responses_.answer(turning_, rhs_, rows_);
   }
   solve();
 }

@@ -19,8 +19,9 @@ class SolidSolver final : public model::SubstructureSolver {
   bool factorise(const model::IntervalPoint& at) override;
   int unstable_directions() const override;
   void turn(const Eigen::VectorXd& q) override { turning_.turn_to(q); }
-  void add_condensed(math::BlockMatrix& K) const override { responses_.add_condensed(turning_, K); }
-  void reduce(Eigen::VectorXd& bracket, const Eigen::VectorXd& h) override;
+  void add_condensed(math::BlockMatrix& K) const override { responses_.add_condensed(K); }
+  void reduce(const Eigen::VectorXd& bracket, const Eigen::VectorXd& h) override;
+  void add_response(Eigen::VectorXd& bracket) const override { responses_.add_to_bodies(bracket); }
   void expand(Eigen::VectorXd& dq, Eigen::VectorXd& dy) override;
   std::string name() const override;
   std::ptrdiff_t factor_bytes() const { return factor_.size().factor_bytes; }

@@ -10,7 +10,9 @@ TiedResponses::TiedResponses(const SolidDescription& data, Eigen::Index n_rows, 
   KW_ = W_;
   P_ = Eigen::MatrixXd::Zero(n_pressures, n);
   S_ = Eigen::MatrixXd::Zero(n, n);
-  of_bodies_ = Eigen::VectorXd::Zero(n);
+  turned_S_ = S_;
+  answer_ = Eigen::VectorXd::Zero(n);
+  of_bodies_ = answer_;
 }
 
 void TiedResponses::impose() {
@@ -28,35 +30,34 @@ void TiedResponses::condense(const math::SymmetricBlockMatrix& K) {
   S_ = (0.5 * (S_ + S_.transpose())).eval();
 }
 
-void TiedResponses::add_condensed(const Turning& turning, math::BlockMatrix& K) const {
-  for (int a = 0; a < ties_.n_hosts(); ++a) {
-    for (int b = 0; b < ties_.n_hosts(); ++b) {
-      auto block = K.block(data_->hosts[static_cast<std::size_t>(a)].pattern_node,
-                           data_->hosts[static_cast<std::size_t>(b)].pattern_node);
-      const auto S = S_.block<host_size, host_size>(host_size * static_cast<Eigen::Index>(a),
-                                                    host_size * static_cast<Eigen::Index>(b));
-      if (!turning.is_turned()) {
-        block += S;
-        continue;
-      }
-      for (int i = 0; i < host_size; i += 3) {
-        for (int j = 0; j < host_size; j += 3) {
-          block.block<3, 3>(i, j) += turning.of_host(a) * S.block<3, 3>(i, j) * turning.of_host(b).transpose();
-        }
-      }
+void TiedResponses::answer(const Turning& turning, const Eigen::VectorXd& b, const Eigen::VectorXd& h) {
+  answer_.noalias() = W_.transpose() * b;
+  if (P_.rows() > 0) answer_.noalias() += P_.transpose() * h;
+  turned_S_ = S_;
+  if (!turning.is_turned()) return;
+  for (int i = 0; i < n_columns(); i += 3) {
+    const Eigen::Matrix3d& left = turning.of_host(i / host_size);
+    answer_.segment<3>(i) = (left * answer_.segment<3>(i)).eval();
+    for (int j = 0; j < n_columns(); j += 3) {
+      turned_S_.block<3, 3>(i, j) = left * S_.block<3, 3>(i, j) * turning.of_host(j / host_size).transpose();
     }
   }
 }
 
-void TiedResponses::add_to_bodies(const Turning& turning, const Eigen::VectorXd& b, const Eigen::VectorXd& h,
-                                  Eigen::VectorXd& rows) {
-  of_bodies_.noalias() = W_.transpose() * b;
-  if (P_.rows() > 0) of_bodies_.noalias() += P_.transpose() * h;
+void TiedResponses::add_to_bodies(Eigen::VectorXd& rows) const {
   for (int host = 0; host < ties_.n_hosts(); ++host) {
-    const Eigen::Index first = data_->hosts[static_cast<std::size_t>(host)].first;
-    for (int i = 0; i < host_size; i += 3) {
-      const Eigen::Vector3d part = of_bodies_.segment<3>(host_size * static_cast<Eigen::Index>(host) + i);
-      rows.segment<3>(first + i) += turning.is_turned() ? Eigen::Vector3d(turning.of_host(host) * part) : part;
+    rows.segment<host_size>(data_->hosts[static_cast<std::size_t>(host)].first) +=
+        answer_.segment<host_size>(host_size * static_cast<Eigen::Index>(host));
+  }
+}
+
+void TiedResponses::add_condensed(math::BlockMatrix& K) const {
+  for (int a = 0; a < ties_.n_hosts(); ++a) {
+    for (int b = 0; b < ties_.n_hosts(); ++b) {
+      K.block(data_->hosts[static_cast<std::size_t>(a)].pattern_node,
+              data_->hosts[static_cast<std::size_t>(b)].pattern_node) +=
+          turned_S_.block<host_size, host_size>(host_size * static_cast<Eigen::Index>(a),
+                                                host_size * static_cast<Eigen::Index>(b));
     }
   }
 }

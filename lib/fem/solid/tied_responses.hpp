@@ -32,10 +32,12 @@ class TiedResponses {
   /// S between the unknowns of the bodies, in the frame of the factor.
   const Eigen::MatrixXd& stiffness() const { return S_; }
 
-  /// Adds S, turned with the bodies, to their blocks.
-  void add_condensed(const Turning& turning, math::BlockMatrix& K) const;
-  /// rows of the bodies (n_q) += W^T b + P^T h.
-  void add_to_bodies(const Turning& turning, const Eigen::VectorXd& b, const Eigen::VectorXd& h, Eigen::VectorXd& rows);
+  /// Computes W^T b + P^T h, and turns it and S with the bodies.
+  void answer(const Turning& turning, const Eigen::VectorXd& b, const Eigen::VectorXd& h);
+  /// Adds the answer to the rows of the bodies (n_q).
+  void add_to_bodies(Eigen::VectorXd& rows) const;
+  /// Adds S as it was turned last to the blocks of the bodies.
+  void add_condensed(math::BlockMatrix& K) const;
   /// Reads the increments of the bodies from dq (n_q), for the next two.
   void read_bodies(const Turning& turning, const Eigen::VectorXd& dq);
   /// x += W dq, p += P dq.
@@ -49,6 +51,8 @@ class TiedResponses {
   Eigen::MatrixXd W_;
   Eigen::MatrixXd P_;
   Eigen::MatrixXd S_;
+  Eigen::MatrixXd turned_S_;
+  Eigen::VectorXd answer_;  // (n_columns)
   Eigen::MatrixXd KW_;
   Eigen::VectorXd of_bodies_;  // (n_columns)
 };
