@@ -8,6 +8,7 @@
 #include "app/progress_bar.hpp"
 #include "app/verbs.hpp"
 #include "base/log.hpp"
+#include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "pipeline/run.hpp"
 #include "pipeline/summary.hpp"
@@ -59,6 +60,7 @@ int run(const RunArguments& arguments) {
   pipeline::RunContext context;
   context.command_line = arguments.command_line;
   context.threads = arguments.threads;
+  base::set_threads(arguments.threads);
   std::optional<scene::Scene> scene;
   std::optional<build::BuiltModel> built;
   {

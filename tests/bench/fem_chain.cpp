@@ -27,9 +27,10 @@ int main(int argc, char** argv) {
   base::set_threads(static_cast<int>(argument(2, 1)));
   const double dt = argument(3, 1.0);
   const double field = argument(4, 3e4);
-  test::TiedSystem system =
-      test::chain_with_muscles(6, {.cells = {4, 4, 18}, .side = 10.0, .viscosity = 0.1, .permittivity = 3 * 8.8542e-12});
-  system.rigid.controls = {{.name = "right", .unit = {}, .function = field}, {.name = "left", .unit = {}, .function = 0.0}};
+  test::TiedSystem system = test::chain_with_muscles(
+      6, {.cells = {4, 4, 18}, .side = 10.0, .viscosity = 0.1, .permittivity = 3 * 8.8542e-12});
+  system.rigid.controls = {{.name = "right", .unit = {}, .function = field},
+                           {.name = "left", .unit = {}, .function = 0.0}};
   const auto model = test::make_model(system);
   variational::State state = test::tied_state(*model, dt, Eigen::VectorXd::Zero(model->manifold->n_v()));
   variational::Stepper stepper(*model, dt, {});
@@ -47,7 +48,9 @@ int main(int argc, char** argv) {
     iterations += report.iterations;
     factorisations += report.factorisations;
     largest = std::max(largest, state.x.lpNorm<Eigen::Infinity>());
-    if (argc > 5) std::cout << step << ' ' << report.iterations << ' ' << report.factorisations << ' ' << state.x.transpose() << '\n';
+    if (argc > 5)
+      std::cout << step << ' ' << report.iterations << ' ' << report.factorisations << ' ' << state.x.transpose()
+                << '\n';
   }
   const double time = milliseconds(start) / static_cast<double>(steps);
   variational::NodeEvaluator nodes(*model, "auto");

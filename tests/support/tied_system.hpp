@@ -42,8 +42,8 @@ fem::SolidDescription muscle(const std::string& name, const Muscle& how, double 
 /// the smallest joint of the kind of the thesis (ch. 5).
 TiedSystem hinge_with_muscle(const Muscle& how);
 
-/// `n_joints` bodies in a row along z, hinged about y, with two muscles of 36 mm side by side at every hinge; the field of
-/// control 0 acts in those at x > 0, that of control 1 in the others.
+/// `n_joints` bodies in a row along z, hinged about y, with two muscles of 36 mm side by side at every hinge; the field
+/// of control 0 acts in those at x > 0, that of control 1 in the others.
 TiedSystem chain_with_muscles(int n_joints, Muscle how);
 
 }  // namespace muldi::test
