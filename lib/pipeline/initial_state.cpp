@@ -10,6 +10,7 @@
 #include "build/place_bodies.hpp"
 #include "multibody/joint_coordinate.hpp"
 #include "pipeline/checkpoint.hpp"
+#include "pipeline/led_solids.hpp"
 #include "statics/sweep.hpp"
 #include "variational/node_values.hpp"
 
@@ -202,9 +203,9 @@ void close_loops(const scene::Scene& scene, const build::BuiltModel& built, cons
                            gap))});
 }
 
-Eigen::VectorXd rates_of_momentum(const scene::Scene& scene, const build::BuiltModel& built, const Eigen::VectorXd& x) {
-  const multibody::TreeManifold& manifold = *built.manifold;
-  Eigen::VectorXd m = Eigen::VectorXd::Zero(manifold.n_v());
+/// The wanted generalised momenta (n_v).
+Eigen::VectorXd wanted_momenta(const scene::Scene& scene, const build::BuiltModel& built) {
+  Eigen::VectorXd m = Eigen::VectorXd::Zero(built.manifold->n_v());
   for (const auto& entry : scene.initial.momentum) {
     const auto* link = built.link_of_joint(static_cast<std::size_t>(scene.joints.index(entry.name)));
     if (link == nullptr) {
@@ -215,6 +216,13 @@ Eigen::VectorXd rates_of_momentum(const scene::Scene& scene, const build::BuiltM
       m[link->first_rate + static_cast<int>(k)] = entry.value.values[k];
     }
   }
+  return m;
+}
+
+/// Minimal velocities with which the bodies alone have the momenta m. The nodes of solids have none, not even where
+/// they are tied: what they take of the motion, the Legendre transform shows.
+Eigen::VectorXd rates_of_momentum(const build::BuiltModel& built, const Eigen::VectorXd& x, const Eigen::VectorXd& m) {
+  const multibody::TreeManifold& manifold = *built.manifold;
   Eigen::VectorXd q(manifold.n_q());
   manifold.configuration(x, q);
   const auto frame = manifold.make_frame();
@@ -232,9 +240,26 @@ Eigen::VectorXd rates_of_momentum(const scene::Scene& scene, const build::BuiltM
   return rates;
 }
 
-/// Adds the rigid motions that the scene gives to solids; prescribed positions do not take part.
-void add_solid_velocities(const scene::Scene& scene, const build::BuiltModel& built, const Eigen::VectorXd& q,
-                          Eigen::VectorXd& v) {
+/// Adds to v (n_q) the velocities of solids: with the bodies that they are tied to, which move by `rates`, and the
+/// rigid motions that the scene gives to them; prescribed positions do not take part.
+void add_velocities(const scene::Scene& scene, const build::BuiltModel& built, const variational::State& state,
+                    const Eigen::VectorXd& rates, Eigen::VectorXd& v) {
+  if (built.solids.empty()) return;
+  LedSolids led(built, scene.solver.tolerance);
+  if (led.any() && !rates.isZero(0.0)) {
+    const auto frame = built.manifold->make_frame();
+    built.manifold->update(state.x, state.q, *frame);
+    Eigen::VectorXd of_bodies = Eigen::VectorXd::Zero(v.size());
+    built.manifold->lift(*frame, rates, of_bodies);
+    led.add_velocities({.x = state.x, .multipliers = {}, .q = state.q, .y = state.y}, of_bodies);
+    for (const fem::Solid* solid : built.solids) {
+      const bool given = scene.initial.solids.find(solid->data().name) != nullptr;
+      const model::Slice& slice = solid->q_slice();
+      if (!given) v.segment(slice.first, slice.size) += of_bodies.segment(slice.first, slice.size);
+    }
+    v.head(built.manifold->n_q()) += of_bodies.head(built.manifold->n_q());
+  }
+  const Eigen::VectorXd& q = state.q;
   for (const auto& entry : scene.initial.solids) {
     const fem::Solid& solid = *built.solids[static_cast<std::size_t>(scene.solids.index(entry.name))];
     const Eigen::Vector3d velocity = build::to_eigen(entry.value.velocity.value_or(base::Vec3{}));
@@ -276,8 +301,19 @@ statics::StaticState starting_point(const scene::Scene& scene, const build::Buil
                              .multipliers = Eigen::VectorXd::Zero(built.manifold->n_loop_rows()),
                              .q = Eigen::VectorXd::Zero(model.n_q()),
                              .y = Eigen::VectorXd::Zero(model.n_y())};
+  const bool moved = std::any_of(scene.initial.joints.begin(), scene.initial.joints.end(),
+                                 [](const auto& entry) { return !entry.value.position.empty(); });
+  LedSolids solids(built, scene.solver.tolerance);
+  const bool led = moved && solids.any();
+  const Eigen::VectorXd x = start.x;
+  if (led) start.x = built.manifold->reference();
   built.manifold->configuration(start.x, start.q);
   for (const auto& part : model.substructures) part->start(start.q, start.y);
+  if (led && !solids.lead_to(x, start)) {
+    throw base::InputError({scene::error_at(
+        scene.initial.joints[0].origin,
+        "the solids that are fixed to the bodies find no rest at the initial joint positions: give smaller ones")});
+  }
   return start;
 }
 
@@ -322,7 +358,7 @@ Eigen::VectorXd initial_rates(const scene::Scene& scene, const build::BuiltModel
     if (!errors.empty()) throw base::InputError(std::move(errors));
     rates = scale.cwiseProduct(solution);
   }
-  if (!scene.initial.momentum.empty()) rates += rates_of_momentum(scene, built, x);
+  static_cast<void>(wanted_momenta(scene, built));  // says what cannot be given
   return rates;
 }
 
@@ -352,13 +388,19 @@ Outcome initial_state(const scene::Scene& scene, const build::BuiltModel& built,
   const Eigen::VectorXd added = initial_rates(scene, built, state.x);
   rates = rates.size() == 0 ? added : Eigen::VectorXd(rates + added);
   manifold.configuration(state.x, state.q);
+  Eigen::VectorXd v = values.v.size() > 0 ? values.v : Eigen::VectorXd(Eigen::VectorXd::Zero(built.model->n_q()));
+  add_velocities(scene, built, state, added, v);
   const auto frame = manifold.make_frame();
   manifold.update(state.x, state.q, *frame);
-  Eigen::VectorXd v = values.v.size() > 0 ? values.v : Eigen::VectorXd(Eigen::VectorXd::Zero(built.model->n_q()));
+  if (!scene.initial.momentum.empty()) rates += rates_of_momentum(built, state.x, wanted_momenta(scene, built));
   v.head(manifold.n_q()).setZero();
   manifold.lift(*frame, rates, v);
-  add_solid_velocities(scene, built, state.q, v);
-  variational::NodeEvaluator(*built.model, "auto").momentum_of(state.q, v, u, state.p);
+  variational::NodeEvaluator nodes(*built.model, "auto");
+  nodes.momentum_of(state.q, v, u, state.p);
+  if (!scene.initial.momentum.empty() && !built.solids.empty() && nodes.evaluate(state, u, u, values)) {
+    rates = values.rate;
+    v = values.v;
+  }
   state.step = 0;
   state.t = 0.0;
   state.increment = (scene.dynamics ? scene.dynamics->step : 0.0) * rates;

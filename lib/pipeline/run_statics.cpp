@@ -25,6 +25,7 @@ void StaticsRun::record(const statics::SweepPoint& point) {
   const std::span<const double> x(point.state.x.data(), static_cast<std::size_t>(point.state.x.size()));
   built_.model->energies({.x = x, .q = point.q, .v = zero_q_, .u = point.u}, parts_);
   constraint_force_ = -point.force;
+  for (const auto& part : built_.model->substructures) part->gather(constraint_force_);
   const model::NodeView view{.t = point.load,
                              .x = point.state.x,
                              .rate = zero_v_,
