@@ -34,6 +34,11 @@ int negative_potentials(const Solid& solid) {
   return solid.unknowns().n_free_potentials();
 }
 
+/// eta of the viscous stress eta d, which resists shear over a step as a modulus eta/dt does; 0 without.
+double viscosity_of(const Material& material) {
+  return material.viscous ? std::visit([](const auto& law) { return law.viscosity; }, *material.viscous) : 0.0;
+}
+
 }  // namespace
 
 SolidSolver::SolidSolver(const Solid& solid, model::Linearisation kind)
@@ -80,7 +85,8 @@ void SolidSolver::weigh_pressures(const model::IntervalPoint& at) {
   const double inertia = solid_.mass() / V.sum() * wave * wave;
   for (Eigen::Index cell = 0; cell < V.size(); ++cell) {
     const auto index = static_cast<std::size_t>(solid_.data().material_of_cell[static_cast<std::size_t>(cell)]);
-    double stiffness = augmentation * (solid_.data().shear_moduli[index] + inertia);
+    const double viscous = step ? viscosity_of(solid_.data().materials[index]) / at.dt : 0.0;
+    double stiffness = augmentation * (solid_.data().shear_moduli[index] + viscous + inertia);
     if (!solid_.is_incompressible()) stiffness = solid_.dilation(static_cast<int>(cell), lagged_.J[cell]).stiffness;
     compliance_[cell] = scale * V[cell] / stiffness;
     // The penalty of a step would be four times that of mean dilatation, whose c is half as large.
