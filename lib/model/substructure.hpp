@@ -135,6 +135,13 @@ class Substructure : public IntervalTerm {
     static_cast<void>(q), static_cast<void>(impulse), static_cast<void>(rows);
   }
 
+  /// True if the part has constraints on velocities; adds minus these to the stage rows: -dg/dq v with the weights of
+  /// the velocity equations, h (n_y).
+  virtual bool add_velocity_rows(const Eigen::VectorXd& q, const Eigen::VectorXd& v, Eigen::VectorXd& h) const {
+    static_cast<void>(q), static_cast<void>(v), static_cast<void>(h);
+    return false;
+  }
+
   /// What iterative evaluations start from, and which thus decides their last bits: a restart needs it.
   virtual Eigen::Index n_memory() const = 0;
   virtual void store_memory(Eigen::Ref<Eigen::VectorXd> out) const = 0;

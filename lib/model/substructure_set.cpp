@@ -58,12 +58,14 @@ void SubstructureSet::turn(const Eigen::VectorXd& q) {
   model_.each_part([&](const Substructure&, std::size_t i) { solvers_[i]->turn(q); });
 }
 
-void SubstructureSet::eliminate(Eigen::VectorXd& bracket, const Eigen::VectorXd& h, math::BlockMatrix& K) {
+void SubstructureSet::respond(Eigen::VectorXd& bracket, const Eigen::VectorXd& h) {
   model_.each_part([&](const Substructure&, std::size_t i) { solvers_[i]->reduce(bracket, h); });
-  for (const auto& solver : solvers_) {
-    solver->add_response(bracket);
-    solver->add_condensed(K);
-  }
+  for (const auto& solver : solvers_) solver->add_response(bracket);
+}
+
+void SubstructureSet::eliminate(Eigen::VectorXd& bracket, const Eigen::VectorXd& h, math::BlockMatrix& K) {
+  respond(bracket, h);
+  for (const auto& solver : solvers_) solver->add_condensed(K);
 }
 
 void SubstructureSet::complete(Eigen::VectorXd& dq, Eigen::VectorXd& dy) {

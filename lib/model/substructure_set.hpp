@@ -34,6 +34,8 @@ class SubstructureSet {
   void turn(const Eigen::VectorXd& q);
   /// Eliminates the parts: their stiffness goes to K, their response to the rows of the bodies in `bracket`.
   void eliminate(Eigen::VectorXd& bracket, const Eigen::VectorXd& h, math::BlockMatrix& K);
+  /// The same but for the stiffness, with other right sides.
+  void respond(Eigen::VectorXd& bracket, const Eigen::VectorXd& h);
   /// Completes dq and dy for the motion of the bodies in dq.
   void complete(Eigen::VectorXd& dq, Eigen::VectorXd& dy);
   int unstable_directions() const;

@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
   const double dt = argument(3, 1.0);
   const double field = argument(4, 3e4);
   test::TiedSystem system = test::chain_with_muscles(
-      6, {.cells = {4, 4, 18}, .side = 10.0, .viscosity = 0.1, .permittivity = 3 * 8.8542e-12});
+      6, {.cells = {4, 4, 18}, .side = 10.0, .viscosity = argument(6, 0.1), .permittivity = 3 * 8.8542e-12});
   system.rigid.controls = {{.name = "right", .unit = {}, .function = field},
                            {.name = "left", .unit = {}, .function = 0.0}};
   const auto model = test::make_model(system);
@@ -44,6 +44,21 @@ int main(int argc, char** argv) {
     if (report.status != variational::Status::running) {
       std::cout << "failed at step " << step << ": " << report.sentence << '\n';
       return 1;
+    }
+    if (argc > 6) {
+      static Eigen::VectorXd q1, q2;
+      if (q2.size() > 0) {
+        const Eigen::VectorXd zig = state.q - 2 * q1 + q2;
+        std::cout << step << " zigzag";
+        for (const auto& part : model->substructures) {
+          Eigen::Index where = 0;
+          const double most = zig.segment(part->q_slice().first, part->q_slice().size).cwiseAbs().maxCoeff(&where);
+          std::cout << "  " << most << "@" << where / 75 << "." << (where / 3) % 25 << "." << where % 3;
+        }
+        std::cout << '\n';
+      }
+      q2 = q1;
+      q1 = state.q;
     }
     iterations += report.iterations;
     factorisations += report.factorisations;

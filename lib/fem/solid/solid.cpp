@@ -217,6 +217,13 @@ void Solid::add_multiplier_impulse(const Eigen::VectorXd& q, const Eigen::Vector
   volumes_at(positions(q)).add_gradients(elements_, weight_, positions(rows));
 }
 
+bool Solid::add_velocity_rows(const Eigen::VectorXd& q, const Eigen::VectorXd& v, Eigen::VectorXd& h) const {
+  if (!is_incompressible()) return false;
+  volumes_at(positions(q)).project(elements_, positions(v), weight_);
+  pressures(h) -= V_.cwiseProduct(weight_);
+  return true;
+}
+
 Eigen::Index Solid::n_memory() const { return potential_solver_ ? 1 + phi_.size() + potential_solver_->n_memory() : 0; }
 
 void Solid::store_memory(Eigen::Ref<Eigen::VectorXd> out) const {

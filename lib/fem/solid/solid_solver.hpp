@@ -37,7 +37,8 @@ class SolidSolver final : public model::SubstructureSolver {
   void respond_exactly();
   void refine();
   void add_motion_of_bodies(const Eigen::VectorXd& dq);
-  bool exact() const { return kind_ != model::Linearisation::step; }
+  /// The other kinds are iterated with exact residuals.
+  bool exact() const { return kind_ == model::Linearisation::rest; }
 
   const Solid& solid_;
   model::Linearisation kind_;
