@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
   const long steps = static_cast<long>(argument(1, 200));
   base::set_threads(static_cast<int>(argument(2, 1)));
   const double dt = argument(3, 1.0);
-  const double field = argument(4, 3e4);
+  const double field = argument(4, 2e4);
   test::TiedSystem system = test::chain_with_muscles(
       6, {.cells = {4, 4, 18}, .side = 10.0, .viscosity = argument(6, 0.1), .permittivity = 3 * 8.8542e-12});
   system.rigid.controls = {{.name = "right", .unit = {}, .function = field},

@@ -20,10 +20,10 @@ const math::LdltAnalysis& affordable(const math::LdltAnalysis& analysis) {
 }  // namespace
 
 SolidFactor::SolidFactor(const math::SymmetricBlockPattern& pattern, const math::NodeMask& mask,
-                         std::vector<std::vector<int>> electrodes)
+                         std::vector<std::vector<int>> electrodes, math::FactorStorage storage)
     : matrix_(pattern),
       analysis_(pattern, mask),
-      factor_(affordable(analysis_)),
+      factor_(affordable(analysis_), storage),
       electrodes_(std::move(electrodes)),
       indicator_(Eigen::VectorXd::Zero(matrix_.n_rows())) {
   const int block = pattern.block_size();

@@ -18,7 +18,8 @@ class SolidFactor {
   /// `block_size` 3 or 4; `mask`: unknowns that are not free, those of floating electrodes included; `electrodes`:
   /// nodes of each floating electrode.
   SolidFactor(const math::SymmetricBlockPattern& pattern, const math::NodeMask& mask,
-              std::vector<std::vector<int>> electrodes);
+              std::vector<std::vector<int>> electrodes,
+              math::FactorStorage storage = math::FactorStorage::double_precision);
 
   /// To be filled before `factorise`.
   math::SymmetricBlockMatrix& matrix() { return matrix_; }

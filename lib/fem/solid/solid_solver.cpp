@@ -24,6 +24,12 @@ int block_size_of(const Solid& solid, model::Linearisation kind) {
   return solid.unknowns().n_free_potentials() > 0 && kind != model::Linearisation::velocity ? 4 : 3;
 }
 
+/// Muscles are many and small: their factors are read from memory in every iteration, and these have exact residuals.
+math::FactorStorage storage_of(const Solid& solid, model::Linearisation kind) {
+  return solid.ties().empty() || kind != model::Linearisation::step ? math::FactorStorage::double_precision
+                                                                    : math::FactorStorage::single_precision;
+}
+
 /// Negative pivots of the potentials: all of them where the enthalpy is concave in the field, as it is for physical
 /// dielectrics, none where it is convex (numerics C1).
 int negative_potentials(const Solid& solid) {
@@ -46,7 +52,7 @@ SolidSolver::SolidSolver(const Solid& solid, model::Linearisation kind)
       kind_(kind),
       pattern_(solid.elements().n_nodes(), block_size_of(solid, kind), solid.elements().cells()),
       slots_(solid.elements().slots_in(pattern_)),
-      factor_(pattern_, solid.unknowns().mask(), electrodes_in(solid, kind)),
+      factor_(pattern_, solid.unknowns().mask(), electrodes_in(solid, kind), storage_of(solid, kind)),
       turning_(solid.data()),
       responses_(solid.data(), factor_.matrix().n_rows(), pattern_.block_size(), solid.n_pressures()),
       expected_negative_(kind == model::Linearisation::velocity ? 0 : negative_potentials(solid)) {
