@@ -17,6 +17,8 @@ constexpr double round_off_residual = 1e-12;
 constexpr double slow_rate = 0.4;
 /// Violation of the constraints inside substructures that one more iteration takes to round-off.
 constexpr double violation_goal = 1e-12;
+/// Violation that is round-off already.
+constexpr double violation_round_off = 2e-13;
 /// Part of a step by which positions are prescribed before its end: where a held control jumps, its old value counts.
 constexpr double before_end = 1e-9;
 
@@ -75,6 +77,7 @@ void Stepper::evaluate(const State& state, std::span<const double> u) {
   q_mid_ = 0.5 * (state.q + q_);
   v_ = (q_ - state.q) / dt_;
   model_.forces(point(state, u), forces_);
+  evaluated_ = true;
 }
 
 void Stepper::project_bracket() {
@@ -101,6 +104,7 @@ double Stepper::residual_of(const State& state) {
 }
 
 void Stepper::move() {
+  evaluated_ = false;
   manifold_.retract(x_before_, dw_, x_);
   manifold_.configuration(x_, q_);
   mu_ = mu_before_ + dmu_;
@@ -205,6 +209,7 @@ bool Stepper::newton(const State& state, std::span<const double> u, bool keep_fa
       if (!retreat(report)) return false;
       evaluate(state, u);
     }
+    if (iteration > 1 && previous <= options_.tolerance && forces_.violation <= violation_round_off) return true;
     report.residual = residual_of(state);
     ++report.iterations;
     const int factorisations = report.factorisations;
@@ -340,7 +345,7 @@ void Stepper::carry_residual() {
 }
 
 void Stepper::finish(State& state, std::span<const double> u, StepReport& report) {
-  evaluate(state, u);
+  if (!evaluated_) evaluate(state, u);
   report.rotation = manifold_.largest_rotation(state.q, q_);
   if (report.rotation > options_.refuse_rotation) {
     report.status = Status::step_too_large;

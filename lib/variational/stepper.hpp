@@ -136,6 +136,7 @@ class Stepper {
   std::vector<double> u_end_;
   FactorPoint factor_;
   bool wants_factor_ = true;
+  bool evaluated_ = false;  // forces_ are those of the iterate
   int halvings_ = 0;
   double reference_regularity_ = 1.0;
 };

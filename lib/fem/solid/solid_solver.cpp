@@ -54,7 +54,8 @@ SolidSolver::SolidSolver(const Solid& solid, model::Linearisation kind)
       slots_(solid.elements().slots_in(pattern_)),
       factor_(pattern_, solid.unknowns().mask(), electrodes_in(solid, kind), storage_of(solid, kind)),
       turning_(solid.data()),
-      responses_(solid.data(), factor_.matrix().n_rows(), pattern_.block_size(), solid.n_pressures()),
+      responses_(solid.data(), factor_.matrix().n_rows(), pattern_.block_size(), solid.n_pressures(),
+                 storage_of(solid, kind)),
       expected_negative_(kind == model::Linearisation::velocity ? 0 : negative_potentials(solid)) {
   const Eigen::Index n_nodes = solid.elements().n_nodes();
   rhs_ = Eigen::VectorXd::Zero(factor_.matrix().n_rows());

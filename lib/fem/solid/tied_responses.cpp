@@ -2,8 +2,9 @@
 
 namespace muldi::fem {
 
-TiedResponses::TiedResponses(const SolidDescription& data, Eigen::Index n_rows, int block, Eigen::Index n_pressures)
-    : data_(&data), ties_(data), block_(block) {
+TiedResponses::TiedResponses(const SolidDescription& data, Eigen::Index n_rows, int block, Eigen::Index n_pressures,
+                             math::FactorStorage storage)
+    : data_(&data), ties_(data), block_(block), storage_(storage) {
   const Eigen::Index n = ties_.n_columns();
   if (n == 0) return;
   W_ = Eigen::MatrixXd::Zero(n_rows, n);
@@ -28,11 +29,44 @@ void TiedResponses::condense(const math::SymmetricBlockMatrix& K) {
   for (Eigen::Index j = 0; j < W_.cols(); ++j) K.multiply(W_.col(j), KW_.col(j));
   S_.noalias() = W_.transpose() * KW_;
   S_ = (0.5 * (S_ + S_.transpose())).eval();
+  if (storage_ == math::FactorStorage::double_precision) return;
+  float_W_ = W_.cast<float>();
+  float_P_ = P_.cast<float>();
+}
+
+void TiedResponses::add_displacements(Eigen::VectorXd& x) {
+  if (storage_ == math::FactorStorage::double_precision) {
+    x.noalias() += W_ * of_bodies_;
+    return;
+  }
+  float_columns_ = of_bodies_.cast<float>();
+  float_rows_.noalias() = float_W_ * float_columns_;
+  x += float_rows_.cast<double>();
+}
+
+void TiedResponses::add_pressures(Eigen::VectorXd& p) {
+  if (storage_ == math::FactorStorage::double_precision) {
+    p.noalias() += P_ * of_bodies_;
+    return;
+  }
+  float_columns_ = of_bodies_.cast<float>();
+  float_pressures_.noalias() = float_P_ * float_columns_;
+  p += float_pressures_.cast<double>();
 }
 
 void TiedResponses::answer(const Turning& turning, const Eigen::VectorXd& b, const Eigen::VectorXd& h) {
-  answer_.noalias() = W_.transpose() * b;
-  if (P_.rows() > 0) answer_.noalias() += P_.transpose() * h;
+  if (storage_ == math::FactorStorage::single_precision) {
+    float_rows_ = b.cast<float>();
+    float_columns_.noalias() = float_W_.transpose() * float_rows_;
+    if (P_.rows() > 0) {
+      float_pressures_ = h.cast<float>();
+      float_columns_.noalias() += float_P_.transpose() * float_pressures_;
+    }
+    answer_ = float_columns_.cast<double>();
+  } else {
+    answer_.noalias() = W_.transpose() * b;
+    if (P_.rows() > 0) answer_.noalias() += P_.transpose() * h;
+  }
   turned_S_ = S_;
   if (!turning.is_turned()) return;
   for (int i = 0; i < n_columns(); i += 3) {

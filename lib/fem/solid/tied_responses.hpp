@@ -9,15 +9,16 @@
 #include "fem/solid/ties.hpp"
 #include "fem/solid/turning.hpp"
 #include "math/block_matrix.hpp"
-#include "math/sparse_block_matrix.hpp"
+#include "math/sparse_ldlt.hpp"
 
 namespace muldi::fem {
 
 class TiedResponses {
  public:
   /// `n_rows`: unknowns of the factor, `block` a node; `n_pressures`: element pressures. `data` must outlive the
-  /// object.
-  TiedResponses(const SolidDescription& data, Eigen::Index n_rows, int block, Eigen::Index n_pressures);
+  /// object. Columns in single precision are for iterations with exact residuals, as the factor beside them.
+  TiedResponses(const SolidDescription& data, Eigen::Index n_rows, int block, Eigen::Index n_pressures,
+                math::FactorStorage storage);
 
   bool empty() const { return ties_.empty(); }
   int n_columns() const { return ties_.n_columns(); }
@@ -41,8 +42,8 @@ class TiedResponses {
   /// Reads the increments of the bodies from dq (n_q), for the next two.
   void read_bodies(const Turning& turning, const Eigen::VectorXd& dq);
   /// x += W dq, p += P dq.
-  void add_displacements(Eigen::VectorXd& x) const { x.noalias() += W_ * of_bodies_; }
-  void add_pressures(Eigen::VectorXd& p) const { p.noalias() += P_ * of_bodies_; }
+  void add_displacements(Eigen::VectorXd& x);
+  void add_pressures(Eigen::VectorXd& p);
 
  private:
   const SolidDescription* data_;
@@ -55,6 +56,12 @@ class TiedResponses {
   Eigen::VectorXd answer_;  // (n_columns)
   Eigen::MatrixXd KW_;
   Eigen::VectorXd of_bodies_;  // (n_columns)
+  math::FactorStorage storage_;
+  Eigen::MatrixXf float_W_;
+  Eigen::MatrixXf float_P_;
+  Eigen::VectorXf float_rows_;
+  Eigen::VectorXf float_pressures_;
+  Eigen::VectorXf float_columns_;
 };
 
 }  // namespace muldi::fem
