@@ -17,6 +17,7 @@ void Model::bind() {
     n_y_ = part->y_slice().end();
   }
   limits_.resize(substructures.size());
+  works_.resize(substructures.size());
   part_counts_.clear();
   for (const auto& term : terms) term->bind(*pattern);
   for (const auto& part : substructures) part->bind(*pattern);
@@ -58,7 +59,9 @@ void Model::rate_tangent(const IntervalPoint& at, const TangentWeights& weights,
 
 IntervalWork Model::work(const IntervalPoint& at) const {
   IntervalWork total;
-  each([&](const IntervalTerm& term) { total += term.work(at); });
+  for (const auto& term : terms) total += term->work(at);
+  each_part([&](const Substructure& part, std::size_t i) { works_[i] = part.work(at); });
+  for (const IntervalWork& work : works_) total += work;
   return total;
 }
 

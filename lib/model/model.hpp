@@ -89,6 +89,7 @@ struct Model {
   bool parts_side_by_side() const;
 
   mutable std::vector<PartLimits> limits_;
+  mutable std::vector<IntervalWork> works_;
   std::vector<std::size_t> part_counts_;
   Eigen::Index n_q_ = 0;
   Eigen::Index n_y_ = 0;

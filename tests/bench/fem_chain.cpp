@@ -32,6 +32,16 @@ int main(int argc, char** argv) {
   system.rigid.controls = {{.name = "right", .unit = {}, .function = field},
                            {.name = "left", .unit = {}, .function = 0.0}};
   const auto model = test::make_model(system);
+  {
+    statics::EquilibriumSolver solver(*model, {});
+    statics::StaticState at = test::static_start(*model);
+    model->manifold->configuration(at.x, at.q);
+    for (const auto& part : model->substructures) part->start(at.q, at.y);
+    const auto begin = Clock::now();
+    const auto report = solver.solve(at, std::vector<double>{field, 0.0});
+    std::cout << "equilibrium: ms " << milliseconds(begin) << ", iterations " << report.iterations << ", converged "
+              << report.converged << ", residual " << report.residual << '\n';
+  }
   variational::State state = test::tied_state(*model, dt, Eigen::VectorXd::Zero(model->manifold->n_v()));
   variational::Stepper stepper(*model, dt, {});
   const std::vector<double> u = {field, 0.0};

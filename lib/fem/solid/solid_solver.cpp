@@ -9,7 +9,8 @@ namespace {
 constexpr double augmentation = 3e2;
 constexpr double pi = 3.14159265358979323846;
 constexpr int max_refinements = 12;
-constexpr double refined = 1e-14;
+/// The same in the columns of the responses, with which an iteration has exact residuals.
+constexpr double refined_column = 1e-9;
 
 std::vector<std::vector<int>> electrodes_in(const Solid& solid, model::Linearisation kind) {
   std::vector<std::vector<int>> nodes;
@@ -194,6 +195,7 @@ void SolidSolver::respond() {
 }
 
 void SolidSolver::respond_exactly() {
+  refined_ = refined_column;
   const Eigen::Index block = pattern_.block_size();
   Eigen::MatrixXd& W = responses_.displacements();
   for (Eigen::Index j = 0; j < W.cols(); ++j) {
@@ -215,6 +217,7 @@ void SolidSolver::respond_exactly() {
     }
     responses_.pressures().col(j) = total_p_;
   }
+  refined_ = refined;
 }
 
 void SolidSolver::reduce(const Eigen::VectorXd& bracket, const Eigen::VectorXd& h) {
@@ -257,7 +260,7 @@ void SolidSolver::solve() {
 void SolidSolver::refine() {
   const Eigen::Index block = pattern_.block_size();
   const double first = dp_.lpNorm<Eigen::Infinity>();
-  for (int i = 0; i < max_refinements && dp_.lpNorm<Eigen::Infinity>() > refined * first; ++i) {
+  for (int i = 0; i < max_refinements && dp_.lpNorm<Eigen::Infinity>() > refined_ * first; ++i) {
     rows_ = -compliance_.cwiseProduct(dp_);
     force_.setZero();
     dp_ = coupling_.cwiseProduct(rows_).cwiseQuotient(compliance_);

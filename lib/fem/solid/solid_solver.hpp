@@ -10,6 +10,9 @@
 
 namespace muldi::fem {
 
+/// What may be left, relative, of the volumes that the factor of an incompressible solid lets through.
+inline constexpr double refined = 1e-14;
+
 class SolidSolver final : public model::SubstructureSolver {
  public:
   SolidSolver(const Solid& solid, model::Linearisation kind);
@@ -50,6 +53,7 @@ class SolidSolver final : public model::SubstructureSolver {
   TiedResponses responses_;
   int expected_negative_ = 0;
   double potential_rows_ = 1.0;  // factor of the rows of the potentials
+  double refined_ = refined;     // what may be left of the volumes that a factor lets through
   Volumes lagged_;
   Eigen::VectorXd weight_;      // w_e
   Eigen::VectorXd coupling_;    // c V_e
