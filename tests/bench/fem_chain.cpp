@@ -1,89 +1,107 @@
-/// Time of a step of a chain of hinged bodies with twelve finite-element muscles, the task of the trunk (performance 0,
-/// 6): exactly incompressible, ideal dielectric, viscous, fields that jump.
+/// Time of a step of a chain of hinged bodies with twelve finite-element muscles of 288 cells, the task of the trunk
+/// (performance 0, 6, 7): exactly incompressible, ideal dielectric, viscous, fields that jump.
+#include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <iostream>
 
 #include "base/parallel.hpp"
+#include "bench/bench_report.hpp"
 #include "support/tied_system.hpp"
 #include "variational/node_values.hpp"
 #include "variational/stepper.hpp"
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using namespace muldi;
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double dt = 1.0;
+constexpr int n_steps = 200;
 
 double milliseconds(Clock::time_point since) {
   return std::chrono::duration<double, std::milli>(Clock::now() - since).count();
 }
 
+struct Chain {
+  std::unique_ptr<model::Model> model;
+  std::vector<double> u = {2e4, 0.0};
+};
+
+Chain chain() {
+  test::TiedSystem system = test::chain_with_muscles(
+      6, {.cells = {4, 4, 18}, .side = 10.0, .viscosity = 0.1, .permittivity = 3.0 * 8.8542e-12});
+  Chain made;
+  for (const char* name : {"right", "left"}) {
+    const double field = made.u[system.rigid.controls.size()];
+    system.rigid.controls.push_back({.name = name, .unit = {}, .function = field});
+  }
+  made.model = test::make_model(system);
+  return made;
+}
+
+struct Stepping {
+  double step_ms = 0.0;
+  double node_ms = 0.0;
+  double iterations = 0.0;  ///< a step
+  long factorisations = 0;
+};
+
+Stepping stepping(const Chain& chain) {
+  const model::Model& model = *chain.model;
+  variational::State state = test::tied_state(model, dt, Eigen::VectorXd::Zero(model.manifold->n_v()));
+  variational::Stepper stepper(model, dt, {});
+  Stepping found;
+  const auto start = Clock::now();
+  for (int step = 0; step < n_steps; ++step) {
+    const variational::StepReport report = stepper.advance(state, chain.u);
+    if (report.status != variational::Status::running) {
+      std::cerr << "step " << step << ": " << report.sentence << '\n';
+      break;
+    }
+    found.iterations += static_cast<double>(report.iterations) / n_steps;
+    found.factorisations += report.factorisations;
+  }
+  found.step_ms = milliseconds(start) / n_steps;
+  variational::NodeEvaluator nodes(model, "auto");
+  variational::NodeValues values;
+  nodes.evaluate(state, chain.u, chain.u, values);
+  const auto begin = Clock::now();
+  nodes.evaluate(state, chain.u, chain.u, values);
+  found.node_ms = milliseconds(begin);
+  return found;
+}
+
+double equilibrium_ms(const Chain& chain) {
+  statics::EquilibriumSolver solver(*chain.model, {});
+  statics::StaticState at = test::static_start(*chain.model);
+  chain.model->manifold->configuration(at.x, at.q);
+  for (const auto& part : chain.model->substructures) part->start(at.q, at.y);
+  const auto begin = Clock::now();
+  if (!solver.solve(at, chain.u).converged) std::cerr << "no equilibrium\n";
+  return milliseconds(begin);
+}
+
 }  // namespace
 
-/// fem_chain [steps [threads [dt [field]]]]
-int main(int argc, char** argv) {
-  const auto argument = [&](int i, double otherwise) { return i < argc ? std::atof(argv[i]) : otherwise; };
-  const long steps = static_cast<long>(argument(1, 200));
-  base::set_threads(static_cast<int>(argument(2, 1)));
-  const double dt = argument(3, 1.0);
-  const double field = argument(4, 2e4);
-  test::TiedSystem system = test::chain_with_muscles(
-      6, {.cells = {4, 4, 18}, .side = 10.0, .viscosity = argument(6, 0.1), .permittivity = 3 * 8.8542e-12});
-  system.rigid.controls = {{.name = "right", .unit = {}, .function = field},
-                           {.name = "left", .unit = {}, .function = 0.0}};
-  const auto model = test::make_model(system);
-  {
-    statics::EquilibriumSolver solver(*model, {});
-    statics::StaticState at = test::static_start(*model);
-    model->manifold->configuration(at.x, at.q);
-    for (const auto& part : model->substructures) part->start(at.q, at.y);
-    const auto begin = Clock::now();
-    const auto report = solver.solve(at, std::vector<double>{field, 0.0});
-    std::cout << "equilibrium: ms " << milliseconds(begin) << ", iterations " << report.iterations << ", converged "
-              << report.converged << ", residual " << report.residual << '\n';
-  }
-  variational::State state = test::tied_state(*model, dt, Eigen::VectorXd::Zero(model->manifold->n_v()));
-  variational::Stepper stepper(*model, dt, {});
-  const std::vector<double> u = {field, 0.0};
-  long iterations = 0;
-  long factorisations = 0;
-  double largest = 0.0;
-  const auto start = Clock::now();
-  for (long step = 0; step < steps; ++step) {
-    const auto report = stepper.advance(state, u);
-    if (report.status != variational::Status::running) {
-      std::cout << "failed at step " << step << ": " << report.sentence << '\n';
-      return 1;
+int main() {
+  bench::BenchReport report("fem_chain");
+  const Chain made = chain();
+  double serial = 0.0;
+  for (const int threads : {1, 2}) {
+    base::set_threads(threads);
+    const std::string on = threads == 1 ? ", 1 thread" : ", 2 threads";
+    const Stepping found = stepping(made);
+    report.add({"step" + on, found.step_ms, "ms", threads == 1 ? std::nan("") : 30.0});
+    report.add({"energies of a node" + on, found.node_ms, "ms"});
+    report.add({"equilibrium" + on, equilibrium_ms(made), "ms"});
+    if (threads == 1) {
+      serial = found.step_ms;
+      report.add({"iterations a step", found.iterations, ""});
+      report.add({"factorisations in 200 steps", static_cast<double>(found.factorisations), ""});
+    } else {
+      report.add({"time with one thread over that with two", serial / found.step_ms, ""});
     }
-    if (argc > 6) {
-      static Eigen::VectorXd q1, q2;
-      if (q2.size() > 0) {
-        const Eigen::VectorXd zig = state.q - 2 * q1 + q2;
-        std::cout << step << " zigzag";
-        for (const auto& part : model->substructures) {
-          Eigen::Index where = 0;
-          const double most = zig.segment(part->q_slice().first, part->q_slice().size).cwiseAbs().maxCoeff(&where);
-          std::cout << "  " << most << "@" << where / 75 << "." << (where / 3) % 25 << "." << where % 3;
-        }
-        std::cout << '\n';
-      }
-      q2 = q1;
-      q1 = state.q;
-    }
-    iterations += report.iterations;
-    factorisations += report.factorisations;
-    largest = std::max(largest, state.x.lpNorm<Eigen::Infinity>());
-    if (argc > 5)
-      std::cout << step << ' ' << report.iterations << ' ' << report.factorisations << ' ' << state.x.transpose()
-                << '\n';
   }
-  const double time = milliseconds(start) / static_cast<double>(steps);
-  variational::NodeEvaluator nodes(*model, "auto");
-  variational::NodeValues values;
-  nodes.evaluate(state, u, u, values);
-  const auto begin = Clock::now();
-  nodes.evaluate(state, u, u, values);
-  std::cout << "ms a step " << time << ", iterations " << static_cast<double>(iterations) / static_cast<double>(steps)
-            << ", factorisations " << factorisations << ", ms a node " << milliseconds(begin) << ", largest angle "
-            << largest << ", last " << state.x.transpose() << '\n';
+  report.print();
 }
