@@ -258,7 +258,8 @@ class ProbeBuilder {
 
 model::FieldHistory history_of(const SolidRecords& records, const scene::RecordedFields& said) {
   const fem::SolidDescription& solid = records.solid().data();
-  model::FieldHistory history{.folder = records.solid().part(), .every = said.every};
+  // Meshes of muscles too: the folder of the muscle holds its series over all records.
+  model::FieldHistory history{.folder = "solids/" + solid.name, .every = said.every};
   history.reference.assign(solid.X.data(), solid.X.data() + solid.X.size());
   for (const auto& cell : solid.cells) history.cells.insert(history.cells.end(), cell.begin(), cell.end());
   for (const scene::SolidField field : said.fields) {

@@ -79,9 +79,10 @@ std::string potentials_text(const fem::SolidUnknowns& unknowns) {
   return base::format("unknown potentials {}", unknowns.n_free_potentials());
 }
 
-/// Positions that are no unknowns: `3 follow bodies (arm)`.
+/// Positions of a tied solid that are no unknowns.
 std::string ties_text(const fem::Solid& solid) {
   const fem::SolidDescription& data = solid.data();
+  if (data.ties.empty() && !data.tied_to_ground) return {};
   std::string hosts;
   for (const fem::Host& host : data.hosts) hosts += (hosts.empty() ? "" : " ") + host.name;
   std::string text;

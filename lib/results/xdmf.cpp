@@ -60,8 +60,7 @@ std::vector<Fields> fields_below(const hdf5::File& file, const std::string& pref
   std::vector<Fields> all;
   const std::vector<std::string> paths = file.data_sets();
   for (const std::string& path : paths) {
-    const bool meshed = path.starts_with(prefix + "solids/") || path.starts_with(prefix + "muscles/");
-    if (!meshed || !path.ends_with("/cells")) continue;
+    if (!path.starts_with(prefix + "solids/") || !path.ends_with("/cells")) continue;
     Fields one{.folder = path.substr(0, path.size() - 6)};
     one.n_cells = file.data_set(path).shape()[0];
     one.n_nodes = file.data_set(one.folder + "/reference").shape()[0];

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """What a process records of solids, and how it goes on: test_solids.py MULDI_SIM."""
 
+import pathlib
 import unittest
 import xml.etree.ElementTree
 
@@ -8,6 +9,7 @@ import h5py
 
 from program import BrokenRuns, ProgramTest, attribute, options, values
 
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 SCENE = """\
 muldi: 1
 title: Actuator of one cube
@@ -155,6 +157,23 @@ class GoesOn(BrokenRuns):
             self.assertLess(difference, 1e-5 * abs(values(whole, path)).max(), name)
 
 
+class MuscleFields(BrokenRuns):
+    def test_a_muscle_of_finite_elements_has_fields_as_a_solid_has(self):
+        twin = (ROOT / "scenes" / "revolute_joint_twin.yaml").read_text().replace("record: {every: 5}\n", "")
+        scene = self.write("twin.yaml", twin + "record: {every: 2, fields: {upper: [position, pressure]}}\n")
+        short = options(["dynamics.duration=4 ms", "statics.steps=1"])
+        self.program("run", scene, *short, "-o", "fe.h5")
+        with h5py.File(self.folder / "fe.h5") as file:
+            self.assertEqual(file["solids/upper/position"].shape, (3, 216, 3))
+            self.assertEqual(file["solids/upper/pressure"].shape, (3, 92))
+            self.assertNotIn("lower", file["solids"])
+        grids = xml.etree.ElementTree.parse(self.folder / "fe.xdmf").getroot().findall(".//Grid[@GridType='Collection']")
+        self.assertEqual([grid.get("Name") for grid in grids], ["upper"])
+        lumped = options(["muscles.upper.model=lumped", "muscles.lower.model=lumped"])
+        said = self.program("run", scene, *short, *lumped, "-o", "lumped.h5").stderr
+        self.assertIn("warning: record.fields.upper: muscle 'upper' has no mesh, only those of model fe have", said)
+
+
 class Validate(ProgramTest):
     def test_tells_what_a_solid_is_made_of(self):
         summary = self.program("validate", self.write("a.yaml", SCENE)).stdout
@@ -164,6 +183,24 @@ class Validate(ProgramTest):
             "    free positions 54, unknown potentials 1, element pressures 8\n"
             "    viscous terms yes, mass yes\n"
             "    solver ",
+            summary,
+        )
+
+    def test_counts_the_trunk_as_the_thesis_does(self):
+        trunk = ROOT / "scenes" / "elephant_trunk_fe.yaml"
+        summary = self.program("validate", trunk).stdout
+        self.assertIn("bodies 6, joints 6, muscles 12 (fe), isolated actuators 0,", summary)
+        self.assertIn(
+            "  muscle m3: 475 nodes, 288 cells, incompressible\n"
+            "    free positions 1275, 150 eliminated by ties to segment1 segment2, no unknown potentials (all are prescribed), "
+            "element pressures 288\n",
+            summary,
+        )
+        # Thesis: 3456 cells, 33168 unknowns with potentials and three fields a cell, 1650 eliminated.
+        self.assertIn(
+            "  all 12 meshes: 5700 nodes, 3456 cells; unknowns 18756 = 15300 positions + 0 potentials + 3456 pressures; "
+            "1650 eliminated by ties, 150 prescribed\n"
+            "    with all positions, potentials and three fields a cell they would be 33168\n",
             summary,
         )
 
