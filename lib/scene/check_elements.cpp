@@ -1,7 +1,7 @@
 // Muscles, springs, loads, the initial state and the tasks.
-#include <cmath>
 
 #include "base/text.hpp"
+#include "scene/multiples.hpp"
 #include "scene/scene_check.hpp"
 
 namespace muldi::scene {
@@ -177,15 +177,8 @@ void SceneCheck::tasks() {
     error({"dynamics", "step"}, "gives " + base::number_text(steps, 3) + " steps, at most 2e9 are run");
     return;
   }
-  // Both numbers are rounded once where they are written, so their quotient is off by a few units in the last place.
-  if (std::abs(steps - std::round(steps)) <= 1e-9 * steps && steps > 0.5) return;
-  const std::string unit = " " + scene_.units.time();
-  const double below = std::floor(steps) * dynamics.step;
-  const double above = std::ceil(steps) * dynamics.step;
-  error({"dynamics", "duration"},
-        "is no multiple of the step " + base::number_text(dynamics.step, 12) + unit + ": take " +
-            (below > 0.0 ? base::number_text(below, 12) + unit + " or " : std::string()) +
-            base::number_text(above, 12) + unit + ", got " + base::number_text(dynamics.duration, 12) + unit);
+  std::string why = why_no_multiple(dynamics.duration, dynamics.step, "the step", scene_.units.time());
+  if (!why.empty()) error({"dynamics", "duration"}, std::move(why));
 }
 
 }  // namespace muldi::scene

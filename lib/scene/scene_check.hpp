@@ -30,6 +30,7 @@ class SceneCheck {
 
  private:
   friend class SolidCheck;
+  friend class OptimalControlCheck;
   using Keys = std::initializer_list<std::string_view>;
 
   /// An error or warning about the entry under these keys, or the deepest that exists.

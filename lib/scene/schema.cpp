@@ -77,6 +77,19 @@ Node schema_of(Tag<RecordedFields>, const base::Field& field);
 Node schema_of(Tag<ProbePoint>, const base::Field& field);
 Node schema_of(Tag<ProbeRegion>, const base::Field& field);
 Node schema_of(Tag<ElectrodeName>, const base::Field& field);
+Node schema_of(Tag<JointPosition>, const base::Field& field);
+Node schema_of(Tag<JointVelocity>, const base::Field& field);
+Node schema_of(Tag<JointRange>, const base::Field& field);
+Node schema_of(Tag<JointTrajectory>, const base::Field& field);
+Node schema_of(Tag<EndMomentum>, const base::Field& field);
+Node schema_of(Tag<HeldControl>, const base::Field& field);
+Node schema_of(Tag<GuessedControl>, const base::Field& field);
+Node schema_of(Tag<Horizon>, const base::Field& field);
+Node schema_of(Tag<Guess>, const base::Field& field);
+template <class T>
+Node schema_of(Tag<ByPoint<T>>, const base::Field& field);
+template <class Type>
+Node schema_of(Tag<Weighted<Type>>, const base::Field& field);
 template <class... Components>
 Node schema_of(Tag<std::variant<Components...>>, const base::Field& field);
 Node schema_of(Tag<base::UnitSystem>, const base::Field& field);
@@ -270,6 +283,53 @@ Node schema_of(Tag<ProbeRegion>, const base::Field& field) {
   return any_of({schema_of<ProbeRegion>(Tag<ProbeRegion>{}, field), typed("string").with("pattern", text("@"))});
 }
 Node schema_of(Tag<ElectrodeName>, const base::Field&) { return typed("string").with("pattern", text("\\.")); }
+
+/// A value for each coordinate: one alone, or a list.
+Node by_coordinate(const Node& one) { return any_of({one, list_of(any_of({one, typed("null")}))}); }
+Node schema_of(Tag<JointPosition>, const base::Field& field) { return by_coordinate(quantity(field)); }
+Node schema_of(Tag<JointVelocity>, const base::Field& field) { return by_coordinate(quantity(field)); }
+Node schema_of(Tag<JointRange>, const base::Field& field) { return by_coordinate(schema_of(Tag<Bounds>{}, field)); }
+Node schema_of(Tag<JointTrajectory>, const base::Field& field) {
+  return by_coordinate(schema_of(Tag<base::TimeFunction>{}, field));
+}
+Node schema_of(Tag<EndMomentum>, const base::Field& field) {
+  return any_of({Node::map().with("enum", Node::sequence({text("rest"), text("free")})),
+                 schema_of(Tag<Named<JointMomentum>>{}, field)});
+}
+Node schema_of(Tag<HeldControl>, const base::Field& field) { return quantity(field); }
+Node schema_of(Tag<GuessedControl>, const base::Field& field) { return schema_of(Tag<base::TimeFunction>{}, field); }
+Node schema_of(Tag<Horizon>, const base::Field& field) {
+  return any_of({quantity(field), schema_of<Horizon>(Tag<Horizon>{}, field)});
+}
+Node schema_of(Tag<Guess>, const base::Field& field) {
+  const auto form = [](std::string_view key, std::string_view doc, Node content) {
+    content.entries.insert(content.entries.begin(), {.key = "description", .mark = {}, .value = text(doc)});
+    return typed("object")
+        .with("additionalProperties", raw("false"))
+        .with("properties", Node::map().with(std::string(key), std::move(content)))
+        .with("required", Node::sequence({text(key)}));
+  };
+  return any_of({Node::map().with("enum", Node::sequence({text("zero"), text("scene")})),
+                 form("simulate", "forward run under functions of time by control",
+                      schema_of(Tag<Named<GuessedControl>>{}, field)),
+                 form("from", "earlier result of optimise, of any step, finished or not", typed("string")),
+                 form("random", "forward runs under random admissible controls; the best solution is taken",
+                      schema_of(Tag<RandomGuesses>{}, field))});
+}
+template <class T>
+Node schema_of(Tag<ByPoint<T>>, const base::Field& field) {
+  return typed("object")
+      .with("propertyNames", schema_of(Tag<RecordedPoint>{}, field))
+      .with("additionalProperties", schema_of(Tag<T>{}, field));
+}
+template <class Type>
+Node schema_of(Tag<Weighted<Type>>, const base::Field& field) {
+  base::Field weight = field;
+  weight.range = base::non_negative;
+  Weighted<Type> value;
+  return any_of(
+      {quantity(weight), object_of([&](SchemaVisitor& visitor) { Weighted<Type>::visit_all(value, visitor); })});
+}
 
 Node schema_of(Tag<Inertia>, const base::Field& field) {
   const Node moments = schema_of(Tag<Vec3>{}, field);
