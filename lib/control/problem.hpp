@@ -48,8 +48,8 @@ struct Trajectory {
   double step = 0.0;
   std::vector<Eigen::VectorXd> x = {};      ///< (n_steps + 1) coordinates of the manifold (n_x)
   std::vector<std::vector<double>> u = {};  ///< (n_steps) all controls of the model, in their own units
-  /// Multipliers of the loop rows at the nodes 0 .. n_steps (n_loop_rows), impulses a node as those of the stepper;
-  /// empty where unknown.
+  /// Multipliers lambda of the loop rows at the nodes 0 .. n_steps (n_loop_rows), forces as those of the stepper; empty
+  /// where unknown.
   std::vector<Eigen::VectorXd> multipliers = {};
 };
 

@@ -67,9 +67,10 @@ struct SolveResult {
   int iterations = 0;
   int n_variables = 0;
   int n_constraints = 0;
-  int derivative_errors = -1;    ///< of the solver's own check; -1 without
-  std::string worst_constraint;  ///< name
-  double worst_time = 0.0;       ///< its time
+  int derivative_errors = -1;       ///< of the solver's own check; -1 without
+  std::string derivative_log = {};  ///< what it found
+  std::string worst_constraint;     ///< name
+  double worst_time = 0.0;          ///< its time
   double worst_violation = 0.0;
   std::vector<ActiveBound> active;
   SolveTimes times;
@@ -91,7 +92,10 @@ struct DerivativeCheck {
 std::vector<DerivativeCheck> check_derivatives(const Problem& problem, std::span<const WeightedObjective> objectives,
                                                const Trajectory& guess);
 
-/// The transcribed trajectory of the forward integrator under given controls: a guess that fulfils the dynamics until
+/// The same of every term of a model that has adjoint derivatives, near the scene pose.
+std::vector<DerivativeCheck> check_terms(const model::Model& model);
+
+/// The trajectory of the forward integrator under given controls: a guess that fulfils the dynamics until
 /// the integrator stops; afterwards the last pose is held. `u`: (n_steps) all controls.
 Trajectory simulate_guess(const Problem& problem, double step, const std::vector<std::vector<double>>& u);
 /// The initial pose, held, under the lowest controls (0 where there is no bound).
