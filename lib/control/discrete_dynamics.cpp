@@ -23,6 +23,16 @@ Vectors zeros(int count, Eigen::Index size) {
 
 std::span<const double> view(const Eigen::VectorXd& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
 
+/// out += factor a^T b, for few columns without the set-up of a blocked product.
+void add_product(double factor, const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, Eigen::MatrixXd& out) {
+  constexpr Eigen::Index few = 16;
+  if (out.cols() <= few) {
+    out += factor * a.transpose().lazyProduct(b);
+  } else {
+    out.noalias() += factor * a.transpose() * b;
+  }
+}
+
 /// D^T (d2g/dq2) D2 of one bilinear row.
 void add_bilinear(const model::Bilinear& row, double factor, const Eigen::MatrixXd& D, const Eigen::MatrixXd& D2,
                   Eigen::MatrixXd& out) {
@@ -208,11 +218,11 @@ void DiscreteDynamics::add_constant_blocks(int k, DynamicsJacobian& out) const {
   const auto at = static_cast<std::size_t>(k);
   const Eigen::MatrixXd& D_0 = node(k).point.D;
   const Eigen::MatrixXd& D_1 = node(k + 1).point.D;
-  out.diagonal[at].noalias() += D_0.transpose() * node(k).MD / h_;
-  out.diagonal[at + 1].noalias() += D_1.transpose() * node(k + 1).MD / h_;
-  const Eigen::MatrixXd coupling = D_0.transpose() * node(k + 1).MD / h_;
-  out.next[at] -= coupling;
-  out.previous[at + 1] -= coupling.transpose();
+  add_product(-1.0 / h_, D_0, node(k + 1).MD, out.next[at]);
+  add_product(-1.0 / h_, node(k + 1).MD, D_0, out.previous[at + 1]);
+  // Both intervals of a node have the same share on it.
+  if (k == 0) add_product(1.0 / h_, D_0, node(0).MD, out.diagonal[0]);
+  add_product(k + 1 < layout_.n_steps ? 2.0 / h_ : 1.0 / h_, D_1, node(k + 1).MD, out.diagonal[at + 1]);
   if (layout_.step < 0) return;
   // d/dh of h/2 F and of M (q_1 - q_0)/h.
   Eigen::VectorXd M_rate(model_.n_q());
@@ -263,12 +273,15 @@ void DiscreteDynamics::add_constant_blocks(int k, DynamicsHessian& out) {
   const auto at = static_cast<std::size_t>(k);
   DynamicsNode& begin = node(k);
   DynamicsNode& end = node(k + 1);
-  const Eigen::MatrixXd own_0 = begin.point.A.transpose() * begin.MD / h_;
-  const Eigen::MatrixXd own_1 = end.point.A.transpose() * end.MD / h_;
-  out.diagonal[at] += own_0 + own_0.transpose();
-  out.diagonal[at + 1] += own_1 + own_1.transpose();
-  out.below[at].noalias() -= end.point.A.transpose() * begin.MD / h_;
-  out.below[at].noalias() -= end.point.D.transpose() * begin.MA / h_;
+  if (k == 0) {
+    add_product(1.0 / h_, begin.point.A, begin.MD, out.diagonal[0]);
+    add_product(1.0 / h_, begin.MD, begin.point.A, out.diagonal[0]);
+  }
+  const double share = k + 1 < layout_.n_steps ? 2.0 / h_ : 1.0 / h_;
+  add_product(share, end.point.A, end.MD, out.diagonal[at + 1]);
+  add_product(share, end.MD, end.point.A, out.diagonal[at + 1]);
+  add_product(-1.0 / h_, end.point.A, begin.MD, out.below[at]);
+  add_product(-1.0 / h_, end.point.D, begin.MA, out.below[at]);
   pieces_.multiply_mass(a_rate_, M_rate_);
   out.y[at] -= M_rate_;
   out.y[at + 1] += M_rate_;

@@ -150,8 +150,9 @@ void EndRows::scale_forces() {
   const Eigen::MatrixXd K = stiffness();
   const NaturalSizes& sizes = setup_.sizes;
   for (Eigen::Index k = 0; k < n_v_; ++k) {
-    const double inertial = sizes.mass[k] / (sizes.duration * sizes.duration);
-    force_scale_[k] = 1.0 / (sizes.theta[k] * (std::abs(K(k, k)) + inertial));
+    // Where nothing is stiff, what the system's inertia resists over the horizon.
+    const double inertial = 1e-3 * sizes.mass[k] / (sizes.duration * sizes.duration);
+    force_scale_[k] = 1.0 / (sizes.theta[k] * std::max(std::abs(K(k, k)), inertial));
   }
 }
 

@@ -10,8 +10,15 @@ template <int m>
 using Square = Eigen::Matrix<double, m, m>;
 template <int m>
 using Local = Eigen::Matrix<double, m, 1>;
-template <int m>
-using Wide = Eigen::Matrix<double, m, Eigen::Dynamic>;
+/// Up to so many coordinates of a piece need no allocation.
+constexpr int few = 12;
+template <int m, int most>
+using Wide = Eigen::Matrix<double, m, Eigen::Dynamic,
+                           m == 1 && most != Eigen::Dynamic ? Eigen::RowMajor : Eigen::ColMajor, m, most>;
+template <int most>
+using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, most, most>;
+template <int most>
+using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, most, 1>;
 
 /// The blocks of a tangent, by i (force) and j (motion).
 template <int m>
@@ -67,18 +74,18 @@ Local<m> local_rate(const IntervalFrame& frame, const Piece& piece) {
 
 }  // namespace
 
-template <int m>
+template <int m, int most>
 void JacobianSink::add_piece(const Piece& piece, const model::LocalExpansion& expansion) {
   const Eigen::Index size = piece.size;
   const auto k = static_cast<std::size_t>(frame_.k);
   const NodeBlocks<m> blocks(expansion.tangent, size, frame_.h);
-  const Wide<m> J[2] = {frame_.begin.J[at_], frame_.end.J[at_]};
+  const Wide<m, most> J[2] = {frame_.begin.J[at_], frame_.end.J[at_]};
   Eigen::MatrixXd* const targets[2][2] = {{&out_.diagonal[k], &out_.next[k]},
                                           {&out_.previous[k + 1], &out_.diagonal[k + 1]}};
   for (std::size_t i = 0; i < 2; ++i) {
     for (std::size_t j = 0; j < 2; ++j) {
-      const Wide<m> BJ = blocks.B[i][j].lazyProduct(J[j]);
-      scatter(Eigen::MatrixXd(J[i].transpose().lazyProduct(BJ)), piece.columns, piece.columns, *targets[i][j]);
+      const Wide<m, most> BJ = blocks.B[i][j].lazyProduct(J[j]);
+      scatter(Block<most>(J[i].transpose().lazyProduct(BJ)), piece.columns, piece.columns, *targets[i][j]);
     }
   }
   for (std::size_t c = 0; c < piece.controls.size(); ++c) {
@@ -88,7 +95,7 @@ void JacobianSink::add_piece(const Piece& piece, const model::LocalExpansion& ex
     const auto column = expansion.tangent.col(2 * size + static_cast<Eigen::Index>(c));
     for (std::size_t i = 0; i < 2; ++i) {
       const Local<m> force = slope * (0.5 * frame_.h * column.head(size) + sign[i] * column.tail(size));
-      scatter_column(Eigen::VectorXd(J[i].transpose() * force), piece.columns, choice,
+      scatter_column(Column<most>(J[i].transpose() * force), piece.columns, choice,
                      i == 0 ? out_.by_w_after[k] : out_.by_w_before[k + 1]);
     }
   }
@@ -98,23 +105,24 @@ void JacobianSink::add_piece(const Piece& piece, const model::LocalExpansion& ex
   const Local<m> p_v = expansion.tangent.block(size, size, size, size) * v;
   for (std::size_t i = 0; i < 2; ++i) {
     const Local<m> force = -0.5 * F_v - sign[i] / frame_.h * p_v;
-    scatter_vector(Eigen::VectorXd(J[i].transpose() * force), piece.columns, out_.by_step[k + i]);
+    scatter_vector(Column<most>(J[i].transpose() * force), piece.columns, out_.by_step[k + i]);
   }
 }
 
 void JacobianSink::add(const model::LocalForms&, const model::LocalExpansion& expansion) {
   const Piece& piece = frame_.list.pieces[at_];
-  if (piece.size == 3) {
-    add_piece<3>(piece, expansion);
-  } else if (piece.size == 1) {
-    add_piece<1>(piece, expansion);
+  const bool is_small = piece.columns.size() <= few;
+  if (piece.size == 3 && is_small) {
+    add_piece<3, few>(piece, expansion);
+  } else if (piece.size == 1 && is_small) {
+    add_piece<1, few>(piece, expansion);
   } else {
-    add_piece<Eigen::Dynamic>(piece, expansion);
+    add_piece<Eigen::Dynamic, Eigen::Dynamic>(piece, expansion);
   }
   ++at_;
 }
 
-template <int m>
+template <int m, int most>
 void HessianSink::add_piece(const Piece& piece, const model::LocalExpansion& expansion) {
   const Eigen::Index size = piece.size;
   const auto k = static_cast<std::size_t>(frame_.k);
@@ -143,15 +151,15 @@ void HessianSink::add_piece(const Piece& piece, const model::LocalExpansion& exp
   const Square<m> H_xx = H.topLeftCorner(size, size);
   const Square<m> H_xv = H.block(0, size, size, size);
   const Square<m> H_vv = H.block(size, size, size, size);
-  const Wide<m> J[2] = {frame_.begin.J[at_], frame_.end.J[at_]};
-  const Wide<m> A[2] = {frame_.begin.A[at_], frame_.end.A[at_]};
+  const Wide<m, most> J[2] = {frame_.begin.J[at_], frame_.end.J[at_]};
+  const Wide<m, most> A[2] = {frame_.begin.A[at_], frame_.end.A[at_]};
   for (std::size_t i = 0; i < 2; ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
       const Square<m> qq =
           0.25 * h * H_xx + 0.5 * sign[j] * H_xv + 0.5 * sign[i] * H_xv.transpose() + sign[i] * sign[j] / h * H_vv;
-      const Wide<m> X = qq.lazyProduct(J[j]) + blocks.B[j][i].transpose().lazyProduct(A[j]);
-      const Wide<m> Y = blocks.B[i][j].lazyProduct(J[j]);
-      const Eigen::MatrixXd block = J[i].transpose().lazyProduct(X) + A[i].transpose().lazyProduct(Y);
+      const Wide<m, most> X = qq.lazyProduct(J[j]) + blocks.B[j][i].transpose().lazyProduct(A[j]);
+      const Wide<m, most> Y = blocks.B[i][j].lazyProduct(J[j]);
+      const Block<most> block = J[i].transpose().lazyProduct(X) + A[i].transpose().lazyProduct(Y);
       scatter(block, piece.columns, piece.columns, i == j ? out_.diagonal[k + i] : out_.below[k]);
     }
   }
@@ -163,7 +171,7 @@ void HessianSink::add_piece(const Piece& piece, const model::LocalExpansion& exp
     for (std::size_t i = 0; i < 2; ++i) {
       const Local<m> q_s = slope * (0.5 * h * H.col(column).head(size) + sign[i] * H.col(column).segment(size, size));
       const Local<m> a_s = slope * (0.5 * h * T.col(column).head(size) + sign[i] * T.col(column).tail(size));
-      const Eigen::VectorXd by_theta = J[i].transpose() * q_s + A[i].transpose() * a_s;
+      const Column<most> by_theta = J[i].transpose() * q_s + A[i].transpose() * a_s;
       Eigen::MatrixXd& target = i == 0 ? out_.w_begin[k] : out_.w_end[k];
       for (std::size_t r = 0; r < piece.columns.size(); ++r) {
         target(choice, piece.columns[r]) += by_theta[static_cast<Eigen::Index>(r)];
@@ -190,7 +198,7 @@ void HessianSink::add_piece(const Piece& piece, const model::LocalExpansion& exp
   for (std::size_t i = 0; i < 2; ++i) {
     const Local<m> q_h = 0.5 * F_x_a - 0.5 * xv - sign[i] / h * vv;
     const Local<m> a_h = -0.5 * F_v - sign[i] / h * p_v;
-    scatter_vector(Eigen::VectorXd(J[i].transpose() * q_h + A[i].transpose() * a_h), piece.columns,
+    scatter_vector(Column<most>(J[i].transpose() * q_h + A[i].transpose() * a_h), piece.columns,
                    out_.step_theta[k + i]);
   }
   out_.step_step += (v.dot(H_vv * v) + 2.0 * p_v_b.dot(v)) / h;
@@ -198,12 +206,13 @@ void HessianSink::add_piece(const Piece& piece, const model::LocalExpansion& exp
 
 void HessianSink::add(const model::LocalForms&, const model::LocalExpansion& expansion) {
   const Piece& piece = frame_.list.pieces[at_];
-  if (piece.size == 3) {
-    add_piece<3>(piece, expansion);
-  } else if (piece.size == 1) {
-    add_piece<1>(piece, expansion);
+  const bool is_small = piece.columns.size() <= few;
+  if (piece.size == 3 && is_small) {
+    add_piece<3, few>(piece, expansion);
+  } else if (piece.size == 1 && is_small) {
+    add_piece<1, few>(piece, expansion);
   } else {
-    add_piece<Eigen::Dynamic>(piece, expansion);
+    add_piece<Eigen::Dynamic, Eigen::Dynamic>(piece, expansion);
   }
   ++at_;
 }

@@ -27,7 +27,7 @@ class JacobianSink final : public model::ExpansionSink {
   void add(const model::LocalForms& forms, const model::LocalExpansion& expansion) override;
 
  private:
-  template <int m>
+  template <int m, int most>
   void add_piece(const Piece& piece, const model::LocalExpansion& expansion);
 
   const IntervalFrame& frame_;
@@ -51,7 +51,7 @@ class HessianSink final : public model::ExpansionSink {
   void add(const model::LocalForms& forms, const model::LocalExpansion& expansion) override;
 
  private:
-  template <int m>
+  template <int m, int most>
   void add_piece(const Piece& piece, const model::LocalExpansion& expansion);
 
   const IntervalFrame& frame_;

@@ -80,8 +80,28 @@ std::string name_of(SolveStatus status) {
   return "";
 }
 
-SolveResult solve(const Problem& problem, std::span<const WeightedObjective> objectives, const Trajectory& guess,
-                  const SolveOptions& options) {
+namespace {
+
+/// Beyond 1 rad a step the midpoint momentum of a body no longer grows with its speed; the integrator refuses 2 rad.
+constexpr double longest_turn = 1.0;
+constexpr double refused_turn = 2.0;
+
+/// The largest turn of a body in one step (rad).
+double largest_turn(const Problem& problem, const Trajectory& trajectory) {
+  const model::Manifold& manifold = *problem.model.manifold;
+  Eigen::VectorXd q0 = Eigen::VectorXd::Zero(problem.model.n_q());
+  Eigen::VectorXd q1 = q0;
+  double largest = 0.0;
+  for (std::size_t n = 0; n + 1 < trajectory.x.size(); ++n) {
+    manifold.configuration(trajectory.x[n], q0);
+    manifold.configuration(trajectory.x[n + 1], q1);
+    largest = std::max(largest, manifold.largest_rotation(q0, q1));
+  }
+  return largest;
+}
+
+SolveResult solve_once(const Problem& problem, std::span<const WeightedObjective> objectives, const Trajectory& guess,
+                       const SolveOptions& options) {
   const Clock::time_point begin = Clock::now();
   SolveResult result;
   result.trajectory = guess;
@@ -120,6 +140,26 @@ SolveResult solve(const Problem& problem, std::span<const WeightedObjective> obj
   result.times.functions = found.function_time;
   result.times.hessian = found.hessian_time;
   result.times.total = seconds_since(begin);
+  return result;
+}
+
+}  // namespace
+
+SolveResult solve(const Problem& problem, std::span<const WeightedObjective> objectives, const Trajectory& guess,
+                  const SolveOptions& options) {
+  SolveResult result = solve_once(problem, objectives, guess, options);
+  const auto is_solved = [&] {
+    return result.status == SolveStatus::optimal || result.status == SolveStatus::acceptable;
+  };
+  if (!is_solved() || largest_turn(problem, result.trajectory) <= longest_turn) return result;
+  // The optimum jumps. Rows against jumps cost time, so they come where they are needed only.
+  Problem limited = problem;
+  limited.limits.longest_turn = longest_turn;
+  result = solve_once(limited, objectives, guess, options);
+  if (is_solved() && largest_turn(problem, result.trajectory) > refused_turn) {
+    result.status = SolveStatus::failed;
+    result.sentence = "bodies turn by more than 2 rad in one step, where the step has no meaning: use a smaller step";
+  }
   return result;
 }
 

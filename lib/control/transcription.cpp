@@ -36,6 +36,7 @@ Transcription::Transcription(const Problem& problem, std::span<const WeightedObj
   make_ends(guess);
   place_unknowns();
   limits_ = std::make_unique<LimitRows>(problem, layout_, *dynamics_->node(0).chart, sizes_.length);
+  if (std::isfinite(problem.limits.longest_turn)) find_angles(guess);
   count_rows();
   set_bounds(guess);
   set_scales();
@@ -55,6 +56,20 @@ Transcription::Transcription(const Problem& problem, std::span<const WeightedObj
   write_jacobian();
   write_hessian();
   scale_objective(guess);
+}
+
+void Transcription::find_angles(const Trajectory& guess) {
+  constexpr double turn = 1e-3;
+  const model::Manifold& manifold = *problem_.model.manifold;
+  Eigen::VectorXd q0 = Eigen::VectorXd::Zero(problem_.model.n_q());
+  manifold.configuration(guess.x[0], q0);
+  Eigen::VectorXd q1 = q0;
+  Eigen::VectorXd x = guess.x[0];
+  for (int k = 0; k < layout_.n_v; ++k) {
+    manifold.retract(guess.x[0], turn * Eigen::VectorXd::Unit(layout_.n_v, k), x);
+    manifold.configuration(x, q1);
+    if (manifold.largest_rotation(q0, q1) > 0.5 * turn) angles_.push_back(k);
+  }
 }
 
 void Transcription::find_sizes(const Trajectory& guess) {
@@ -129,6 +144,7 @@ void Transcription::count_rows() {
     if (motions_[end]) motion_row_[end] = take(motions_[end]->n_rows());
   }
   limit_row_ = take(static_cast<int>(limits_->rows().size()));
+  turn_row_ = take(static_cast<int>(angles_.size()) * layout_.n_steps);
   int peaks = 0;
   for (const double factor : objectives_.peak_factors()) peaks += factor != 0.0 ? layout_.n_steps : 0;
   peak_row_ = take(objectives_.has_peak() ? peaks : 0);
@@ -188,6 +204,9 @@ void Transcription::set_bounds(const Trajectory&) {
     bounds_.c_lower[limit_row_ + static_cast<Eigen::Index>(i)] = limits_->rows()[i].lower;
     bounds_.c_upper[limit_row_ + static_cast<Eigen::Index>(i)] = limits_->rows()[i].upper;
   }
+  const Eigen::Index n_turns = peak_row_ - turn_row_;
+  bounds_.c_lower.segment(turn_row_, n_turns).setConstant(-problem_.limits.longest_turn);
+  bounds_.c_upper.segment(turn_row_, n_turns).setConstant(problem_.limits.longest_turn);
   if (objectives_.has_peak()) bounds_.c_upper.tail(n_rows_ - peak_row_).setConstant(infinity);
 }
 

@@ -55,6 +55,7 @@ class Transcription final : public Nlp {
   double impulse_weight(int node, double step) const;
   void count_rows();
   void find_sizes(const Trajectory& guess);
+  void find_angles(const Trajectory& guess);
   void make_ends(const Trajectory& guess);
   void place_unknowns();
   void set_bounds(const Trajectory& guess);
@@ -90,6 +91,7 @@ class Transcription final : public Nlp {
   std::array<int, 2> end_row_{};
   std::array<int, 2> motion_row_{-1, -1};
   int limit_row_ = 0;
+  int turn_row_ = 0;
   int peak_row_ = 0;
 
   NlpBounds bounds_;
@@ -111,6 +113,7 @@ class Transcription final : public Nlp {
   std::set<std::pair<int, int>> plain_pairs_;  // choices of which one piece has both
   const Eigen::VectorXd* motion_weights_ = nullptr;
   double change_factor_ = 0.0;
+  std::vector<int> angles_;             // coordinates whose change from node to node is limited
   Eigen::MatrixXd equilibrium_lambda_;  // (n_c, n_v) Hessian by the multipliers of the equilibrium
 };
 

@@ -73,6 +73,12 @@ void Transcription::constraints(Eigen::VectorXd& out) {
     const double w = limit.choice >= 0 ? unknowns_[layout_.w(limit.interval, limit.choice)] : 0.0;
     out[limit_row_ + static_cast<Eigen::Index>(i)] = limits_->value(limit, *dynamics_, w);
   }
+  int turn = turn_row_;
+  for (const int k : angles_) {
+    for (int n = 0; n < layout_.n_steps; ++n) {
+      out[turn++] = unknowns_[layout_.theta(n + 1, k)] - unknowns_[layout_.theta(n, k)];
+    }
+  }
   int peak = peak_row_;
   for (int c = 0; c < layout_.n_u && objectives_.has_peak(); ++c) {
     const double factor = objectives_.peak_factors()[static_cast<std::size_t>(c)];
@@ -160,6 +166,13 @@ void Transcription::write_limit_rows() {
     }
     for (const int c : limits_->columns(i)) out.add(row, layout_.theta(limit.node, c), d.by_theta[c]);
     if (limit.choice >= 0) out.add(row, layout_.w(limit.interval, limit.choice), d.by_w);
+  }
+  int turn = turn_row_;
+  for (const int k : angles_) {
+    for (int n = 0; n < layout_.n_steps; ++n, ++turn) {
+      out.add(turn, layout_.theta(n + 1, k), 1.0);
+      out.add(turn, layout_.theta(n, k), -1.0);
+    }
   }
   int peak = peak_row_;
   for (int c = 0; c < layout_.n_u && objectives_.has_peak(); ++c) {
@@ -298,6 +311,7 @@ Transcription::Place Transcription::row_place(int row) const {
     }
   }
   if (row >= peak_row_) return {"peak_field", 0};
+  if (row >= turn_row_) return {"longest turn in a step", (row - turn_row_) % layout_.n_steps};
   if (row >= limit_row_) {
     const LimitRow& limit = limits_->rows()[static_cast<std::size_t>(row - limit_row_)];
     return {limit.name, limit.node};

@@ -23,6 +23,7 @@ void Model::bind() {
 }
 
 void Model::evaluate_controls(double t, std::vector<double>& u) const {
+  u.resize(controls.size());
   for (std::size_t k = 0; k < controls.size(); ++k) u[k] = controls[k].function.at(t);
 }
 
