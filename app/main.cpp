@@ -21,6 +21,7 @@ struct CommandLine {
   results::CompareOptions compare;
   bool quiet = false;
   bool no_progress = false;
+  bool derivatives = false;
   int verbose = 0;
 };
 
@@ -30,21 +31,38 @@ void add_scene_options(CLI::App& verb, CommandLine& line) {
       ->allow_extra_args(false);
 }
 
-void add_run(CLI::App& program, CommandLine& line) {
-  CLI::App* verb = program.add_subcommand("run", "run the statics and dynamics of a scene");
-  verb->add_option("scene", line.run.scene, "scene file")->required()->type_name("SCENE.yaml");
-  CLI::Option* output = verb->add_option("-o,--output", line.run.output, "result file; default <scene stem>.h5 here");
-  output->type_name("FILE");
-  add_scene_options(*verb, line);
-  verb->add_option("--threads", line.run.threads, "number of threads; results do not depend on it")
+/// Scene, output and the other options of the verbs that write a result file.
+void add_run_options(CLI::App& verb, CommandLine& line) {
+  verb.add_option("scene", line.run.scene, "scene file")->required()->type_name("SCENE.yaml");
+  verb.add_option("-o,--output", line.run.output, "result file; default <scene stem>.h5 here")->type_name("FILE");
+  add_scene_options(verb, line);
+  verb.add_option("--threads", line.run.threads, "number of threads; results do not depend on it")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
-  CLI::Option* force = verb->add_flag("--force", line.run.force, "overwrite an existing result file");
+  verb.add_flag("--force", line.run.force, "overwrite an existing result file");
+  verb.add_flag("--no-progress", line.no_progress, "no progress bar");
+}
+
+void add_run(CLI::App& program, CommandLine& line) {
+  CLI::App* verb = program.add_subcommand("run", "run the statics and dynamics of a scene");
+  add_run_options(*verb, line);
   verb->add_option("--resume", line.run.resume, "go on at the state recorded in this result file, in the same file")
       ->type_name("FILE")
-      ->excludes(output)
-      ->excludes(force);
-  verb->add_flag("--no-progress", line.no_progress, "no progress bar");
+      ->excludes(verb->get_option("--output"))
+      ->excludes(verb->get_option("--force"));
+}
+
+void add_optimise(CLI::App& program, CommandLine& line) {
+  CLI::App* verb = program.add_subcommand("optimise", "find the controls that a scene asks for, and replay them");
+  verb->alias("optimize");
+  add_run_options(*verb, line);
+}
+
+void add_check(CLI::App& program, CommandLine& line) {
+  CLI::App* verb = program.add_subcommand("check", "check the program itself on a scene");
+  verb->add_option("scene", line.run.scene, "scene file")->required()->type_name("SCENE.yaml");
+  verb->add_flag("--derivatives", line.derivatives, "Taylor and difference checks of all derivatives")->required();
+  add_scene_options(*verb, line);
 }
 
 void add_others(CLI::App& program, CommandLine& line) {
@@ -75,6 +93,11 @@ int dispatch(const CLI::App& program, CommandLine& line) {
     line.run.progress = !line.no_progress;
     return app::run(line.run);
   }
+  if (program.got_subcommand("optimise")) {
+    line.run.progress = !line.no_progress;
+    return app::optimise(line.run);
+  }
+  if (program.got_subcommand("check")) return app::check_derivatives(line.run.scene, line.run.overrides);
   if (program.got_subcommand("validate")) return app::validate(line.scenes, line.run.overrides);
   if (program.got_subcommand("compare")) return app::compare(line.first, line.second, line.compare);
   if (program.got_subcommand("info")) return app::info(line.first);
@@ -150,6 +173,8 @@ int main(int argc, char** argv) {
   program.add_flag("--quiet", line.quiet, "warnings and errors only");
   program.add_flag("-v", line.verbose, "say more; -vv everything");
   add_run(program, line);
+  add_optimise(program, line);
+  add_check(program, line);
   add_others(program, line);
   try {
     program.parse(argc, argv);

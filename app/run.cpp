@@ -1,11 +1,11 @@
 #include <cmath>
-#include <filesystem>
 #include <optional>
 
 #include "app/earlier_record.hpp"
 #include "app/exit_code.hpp"
 #include "app/interrupt.hpp"
 #include "app/progress_bar.hpp"
+#include "app/run_output.hpp"
 #include "app/verbs.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
@@ -18,23 +18,6 @@
 namespace muldi::app {
 namespace {
 
-void print(const std::vector<base::Diagnostic>& diagnostics) {
-  for (const base::Diagnostic& diagnostic : diagnostics) base::log_plain(base::to_string(diagnostic));
-}
-
-results::Output output_of(const RunArguments& arguments) {
-  results::Output output;
-  if (!arguments.resume.empty()) {
-    output.path = arguments.resume;
-    output.mode = results::Output::Mode::resume;
-    return output;
-  }
-  output.path =
-      arguments.output.empty() ? std::filesystem::path(arguments.scene).stem().string() + ".h5" : arguments.output;
-  output.mode = arguments.force ? results::Output::Mode::overwrite : results::Output::Mode::create;
-  return output;
-}
-
 void report(const pipeline::Outcome& outcome, const std::string& path) {
   const std::string status = variational::name_of(outcome.status);
   const std::string at = std::isnan(outcome.time) ? "" : base::format(" at t = {:.6g}", outcome.time);
@@ -45,12 +28,6 @@ void report(const pipeline::Outcome& outcome, const std::string& path) {
   } else {
     base::log_error(base::format("{}{}: {} (what was computed is in {})", status, at, outcome.sentence, path));
   }
-}
-
-void report_phases(const base::Phases& phases) {
-  std::vector<std::string> parts;
-  for (const base::Phase& phase : phases.all()) parts.push_back(base::format("{} {:.3g} s", phase.name, phase.seconds));
-  base::log_verbose("wall time: " + base::joined(parts, ", "));
 }
 
 }  // namespace
@@ -66,7 +43,8 @@ int run(const RunArguments& arguments) {
     scene = scene::read_scene(arguments.scene, arguments.overrides);
     print(scene->warnings);
     if (!scene->statics && !scene->dynamics) {
-      throw base::InputError({scene::error_at(scene->origin, "nothing to run: give `statics:` or `dynamics:`")});
+      const std::string hint = scene->optimal_control ? "; for `optimal_control:` there is the verb optimise" : "";
+      throw base::InputError({scene::error_at(scene->origin, "nothing to run: give `statics:` or `dynamics:`" + hint)});
     }
   }
   {

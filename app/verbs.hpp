@@ -19,6 +19,8 @@ struct RunArguments {
 };
 
 int run(const RunArguments& arguments);
+int optimise(const RunArguments& arguments);
+int check_derivatives(const std::string& scene, const std::vector<std::string>& overrides);
 int validate(const std::vector<std::string>& scenes, const std::vector<std::string>& overrides);
 int compare(const std::string& first, const std::string& second, const results::CompareOptions& options);
 int info(const std::string& file);

@@ -112,6 +112,10 @@ void add_muscles_of(TermContext& context, std::vector<base::Diagnostic>& errors)
     const muscles::MuscleGiven given = given_of(context.scene, muscle, length);
     const Element element = std::get<std::optional<Model>>(muscle.options).value_or(Model{}).element(given);
     const auto inputs = inputs_of<Model>(context, muscle, given);
+    for (const muscles::ControlInput& input : inputs) {
+      if (input.control < 0) continue;
+      context.built.driven_muscles.push_back({entry.name, input.control, input.factor, length});
+    }
     if (is_free(muscle)) {
       free.push_back({entry.name, element, n_bodies + free_index, 12 * n_bodies + free_index, inputs});
       add_observables(context, muscles::observables_of(free.back()));

@@ -25,6 +25,14 @@ struct Assembled {
   bool electric = false;  ///< any muscle or solid that can be charged
 };
 
+/// A muscle with a control: its field is `field_factor` times the control.
+struct DrivenMuscle {
+  std::string name;
+  int control = 0;            ///< index in the model's controls
+  double field_factor = 1.0;  ///< nominal field by control
+  double rest_length = 0.0;
+};
+
 /// The model with what it keeps alive, and the way back to the names of the scene.
 struct BuiltModel {
   std::unique_ptr<model::Model> model;
@@ -33,6 +41,7 @@ struct BuiltModel {
   std::vector<const fem::Solid*> solids;                          ///< of the model, in the order of the scene
   std::vector<std::unique_ptr<fem::SolidRecords>> solid_records;  ///< of these, referred to by observables
   std::vector<base::Diagnostic> notes;                            ///< small gaps that were closed, and the like
+  std::vector<DrivenMuscle> driven_muscles;
   std::size_t n_named_controls = 0;  ///< the scene's controls come first; then functions of drives
   std::string linear = "auto";       ///< linear solver that the scene asks for; it can solve this system
   Assembled assembled;

@@ -152,6 +152,10 @@ std::string summary(const scene::Scene& scene, const build::BuiltModel& built) {
   text +=
       base::format("  statics {}, dynamics {}\n", scene.statics ? base::format("{} steps", scene.statics->steps) : "no",
                    scene.dynamics ? base::format("{} steps", scene.dynamics->n_steps()) : "no");
+  if (scene.optimal_control) {
+    text += base::format("  optimal control: {} steps, {} controls sought\n", scene.optimal_control->n_steps(),
+                         scene.optimal_control->controls.size());
+  }
   text += base::format("  estimated memory {:.1f} MiB, results {:.1f} MiB\n",
                        (memory_bytes(scene, built) + of_solids) / mebi, result_bytes(scene, built) / mebi);
   return text;

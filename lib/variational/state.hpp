@@ -42,6 +42,8 @@ enum class Status {
   breakdown,
   step_too_large,
   rank_change,
+  infeasible,       ///< of optimal control, as the next
+  iteration_limit,  ///<
   write_error,
 };
 

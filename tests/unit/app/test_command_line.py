@@ -19,7 +19,7 @@ class Usage(ProgramTest):
         self.assertEqual(self.message(*arguments, code=2), "error: " + sentence)
 
     def test_no_verb(self):
-        self.expect([], "give a verb: run, validate, compare, info, schema; see 'muldi-sim --help'")
+        self.expect([], "give a verb: run, optimise, check, validate, compare, info, schema; see 'muldi-sim --help'")
 
     def test_misspelt_verb(self):
         self.expect(["valdate", "x.yaml"], "no verb 'valdate' (did you mean 'validate'?); see 'muldi-sim --help'")
@@ -147,7 +147,7 @@ class Streams(ProgramTest):
             self.assertRegex(done.stdout, rf"(?m)^{name} \d")
 
     def test_help_goes_to_stdout(self):
-        for verb in ("run", "validate", "compare", "info", "schema"):
+        for verb in ("run", "optimise", "check", "validate", "compare", "info", "schema"):
             done = self.program(verb, "--help")
             self.assertEqual(done.stderr, "")
             self.assertIn(f"muldi-sim {verb}", done.stdout)
