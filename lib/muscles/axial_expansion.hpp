@@ -4,7 +4,7 @@
 ///
 /// With g1 = dl/dz + f and g2 = dl/dzd as functions of (z, zd, e), and the line z = |r|, zd = n.w, the forces are
 /// F = g1 n + g2 t and pi = g2 n, and Psi = g1 z' + g2 d' with the derivatives z' = n.a, d' = t.a + n.b of z and zd
-/// along (a, b): second derivatives of g1 and g2 come from jets, those of the four functions of the line from
+/// along (a, b): second derivatives of g1 and g2 come from dual numbers, those of the four functions of the line from
 ///
 ///     P = (1 - n n^T)/z = dn/dr,   S(a) = d(P a)/dr = -(n (P a)^T + (P a) n^T + (n.a) P)/z
 ///
@@ -29,19 +29,58 @@ struct AxialForces {
 template <int n_controls>
 using SquaredControls = Controls<double, n_controls>;
 
-/// Jets over (z, zd, e); controls that count by their square enter as constants.
-template <AxialElement Element>
-AxialForces<2 + Element::n_controls> plain_axial_forces(const Element& element, double z, double zd,
-                                                        const Controls<double, Element::n_controls>& e) {
-  constexpr int n = 2 + Element::n_controls;
-  using Jet = math::Jet2<n>;
-  Controls<Jet, Element::n_controls> seeds;
-  for (int c = 0; c < Element::n_controls; ++c) {
-    const auto at = static_cast<std::size_t>(c);
-    seeds[at] = Jet::variable(e[at], 2 + c);
+/// g1 and g2 with their derivatives by (z, zd, e): first ones from the element's second derivatives, second ones, if
+/// wanted, from dual numbers through these. `n_variables`: 2 leaves the controls out.
+template <int n_variables, AxialElement Element>
+AxialForces<n_variables> axial_forces(const Element& element, double z, double zd,
+                                      const Controls<double, Element::n_controls>& e, bool second) {
+  constexpr bool with_controls = n_variables > 2;
+  AxialForces<n_variables> g;
+  const auto d = axial_derivatives(element, z, zd, e);
+  g.g1.value = d.l_z + d.f;
+  g.g2.value = d.l_d;
+  g.g1.gradient[0] = d.l_zz + d.f_z;
+  g.g1.gradient[1] = d.l_zd + d.f_d;
+  g.g2.gradient[0] = d.l_zd;
+  g.g2.gradient[1] = d.l_dd;
+  if constexpr (with_controls) {
+    for (std::size_t c = 0; c < e.size(); ++c) g.g1.gradient[2 + c] = d.h_e[c];
   }
-  const auto d = axial_derivatives(element, Jet::variable(z, 0), Jet::variable(zd, 1), seeds);
-  return {d.l_z + d.f, d.l_d};
+  if (!second) return g;
+  using Along = math::Dual<double>;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(n_variables); ++i) {
+    Controls<Along, Element::n_controls> seeds;
+    for (std::size_t c = 0; c < e.size(); ++c) seeds[c] = Along(e[c], i == 2 + c ? 1.0 : 0.0);
+    const auto s = axial_derivatives(element, Along(z, i == 0 ? 1.0 : 0.0), Along(zd, i == 1 ? 1.0 : 0.0), seeds);
+    // Row i of the lower triangle.
+    const std::size_t row = i * (i + 1) / 2;
+    g.g1.hessian[row] = s.l_zz.slope + s.f_z.slope;
+    g.g2.hessian[row] = s.l_zd.slope;
+    if (i == 0) continue;
+    g.g1.hessian[row + 1] = s.l_zd.slope + s.f_d.slope;
+    g.g2.hessian[row + 1] = s.l_dd.slope;
+    if constexpr (with_controls) {
+      for (std::size_t c = 0; 2 + c <= i; ++c) g.g1.hessian[row + 2 + c] = s.h_e[c].slope;
+    }
+  }
+  return g;
+}
+
+/// to += factor from, of the variables (z, zd).
+template <int n>
+void add_share(const math::Jet2<2>& from, double factor, math::Jet2<n>& to) {
+  to.value += factor * from.value;
+  for (std::size_t i = 0; i < 2; ++i) to.gradient[i] += factor * from.gradient[i];
+  for (std::size_t k = 0; k < 3; ++k) to.hessian[k] += factor * from.hessian[k];
+}
+
+/// The derivatives by a variable of which `slope` is the factor.
+template <int n>
+void add_variable(const math::Jet2<2>& slope, int variable, math::Jet2<n>& to) {
+  const auto v = static_cast<std::size_t>(variable);
+  to.gradient[v] += slope.value;
+  to.hessian[v * (v + 1) / 2] += slope.gradient[0];
+  to.hessian[v * (v + 1) / 2 + 1] += slope.gradient[1];
 }
 
 /// Forces affine in every e_c^2: g = g(0) + sum_c e_c^2 (g(reference_c) - g(0))/reference_c^2, whose derivatives by
@@ -49,45 +88,27 @@ AxialForces<2 + Element::n_controls> plain_axial_forces(const Element& element, 
 template <AxialElement Element>
 AxialForces<2 + Element::n_controls> squared_axial_forces(const Element& element, double z, double zd,
                                                           const Controls<double, Element::n_controls>& e,
-                                                          const SquaredControls<Element::n_controls>& reference) {
-  using Small = math::Jet2<2>;
-  using Jet = math::Jet2<2 + Element::n_controls>;
-  const auto forces_at = [&](const Controls<double, Element::n_controls>& value) {
-    Controls<Small, Element::n_controls> constants;
-    for (std::size_t c = 0; c < value.size(); ++c) constants[c] = Small(value[c]);
-    const auto d = axial_derivatives(element, Small::variable(z, 0), Small::variable(zd, 1), constants);
-    return AxialForces<2>{d.l_z + d.f, d.l_d};
-  };
-  const auto widen = [](const Small& from, double factor, Jet& to) {
-    to.value += factor * from.value;
-    for (std::size_t i = 0; i < 2; ++i) to.gradient[i] += factor * from.gradient[i];
-    for (std::size_t k = 0; k < 3; ++k) to.hessian[k] += factor * from.hessian[k];
-  };
-  const auto by_square = [](const Small& from, int variable, Jet& to) {
-    to.gradient[static_cast<std::size_t>(variable)] += from.value;
-    const std::size_t row = static_cast<std::size_t>(variable) * static_cast<std::size_t>(variable + 1) / 2;
-    to.hessian[row] += from.gradient[0];
-    to.hessian[row + 1] += from.gradient[1];
-  };
+                                                          const SquaredControls<Element::n_controls>& reference,
+                                                          bool second) {
   Controls<double, Element::n_controls> at{};
-  const AxialForces<2> none = forces_at(at);
+  const AxialForces<2> none = axial_forces<2>(element, z, zd, at, second);
   AxialForces<2 + Element::n_controls> sum;
-  widen(none.g1, 1.0, sum.g1);
-  widen(none.g2, 1.0, sum.g2);
+  add_share(none.g1, 1.0, sum.g1);
+  add_share(none.g2, 1.0, sum.g2);
   for (int c = 0; c < Element::n_controls; ++c) {
     const auto of = static_cast<std::size_t>(c);
     at = {};
     at[of] = reference[of];
-    AxialForces<2> share = forces_at(at);
+    AxialForces<2> share = axial_forces<2>(element, z, zd, at, second);
     const double factor = 1.0 / (reference[of] * reference[of]);
     share.g1 -= none.g1;
     share.g1 *= factor;
     share.g2 -= none.g2;
     share.g2 *= factor;
-    widen(share.g1, e[of] * e[of], sum.g1);
-    widen(share.g2, e[of] * e[of], sum.g2);
-    by_square(share.g1, 2 + c, sum.g1);
-    by_square(share.g2, 2 + c, sum.g2);
+    add_share(share.g1, e[of] * e[of], sum.g1);
+    add_share(share.g2, e[of] * e[of], sum.g2);
+    add_variable(share.g1, 2 + c, sum.g1);
+    add_variable(share.g2, 2 + c, sum.g2);
   }
   return sum;
 }

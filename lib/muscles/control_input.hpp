@@ -46,17 +46,18 @@ struct ControlSlots {
 
   /// Where one control counts by its square, constants do too: the forces are affine in the squares of all of them.
   template <AxialElement Element>
-  AxialForces<2 + n> axial_forces(const Element& element, double z, double zd, const Controls<double, n>& e) const {
+  AxialForces<2 + n> axial_forces(const Element& element, double z, double zd, const Controls<double, n>& e,
+                                  bool second) const {
     if constexpr (n > 0) {
       if (any_squared) {
         auto all = reference;
         for (std::size_t c = 0; c < all.size(); ++c) {
           if (all[c] == 0.0) all[c] = e[c] != 0.0 ? e[c] : 1.0;
         }
-        return squared_axial_forces(element, z, zd, e, all);
+        return squared_axial_forces(element, z, zd, e, all, second);
       }
     }
-    return plain_axial_forces(element, z, zd, e);
+    return muscles::axial_forces<2 + n>(element, z, zd, e, second);
   }
 
   /// Columns from `first` on: from the element's controls to the model's.

@@ -158,7 +158,8 @@ class FreeActuatorTerm final : public model::IntervalTerm {
       for (const auto& actuator : actuators_) {
         const auto s = actuator.state(at.q, at.v, at.u);
         const ControlSlots<n> slots(actuator.controls, request.squared);
-        const AxialForces<2 + n> g = slots.axial_forces(Isolated<Element>{actuator.element}, s.z, s.zd, s.e);
+        const AxialForces<2 + n> g =
+            slots.axial_forces(Isolated<Element>{actuator.element}, s.z, s.zd, s.e, request.a != nullptr);
         for (int k = 0; k < 2 + n; ++k) {
           tangent(0, k) = g.g1.d(k);
           tangent(1, k) = g.g2.d(k);

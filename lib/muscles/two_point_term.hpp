@@ -119,7 +119,7 @@ class TwoPointTerm final : public model::IntervalTerm {
         }
         const LineExpansion line(relative);
         const ControlSlots<n> slots(component.controls, request.squared);
-        const AxialForces<2 + n> g = slots.axial_forces(component.element, line.z, line.zd, x.e);
+        const AxialForces<2 + n> g = slots.axial_forces(component.element, line.z, line.zd, x.e, request.a != nullptr);
         relative_tangent<n>(line, g, tangent);
         if (request.a != nullptr) relative_hessian<n>(line, g, hessian);
         slots.scale(tangent, 6);

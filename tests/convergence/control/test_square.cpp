@@ -62,8 +62,8 @@ TEST(SquareProblem, FourBarIsTheForwardSimulation) {
   system.joint_forces.push_back({.joint = 0, .stiffness = 2.0, .damping = 10.0, .control = 0});
   system.controls.push_back({.name = "torque", .unit = {}, .function = 0.0});
   ControlCase at(system);
-  at.set_horizon(20, 5.0);
-  hold(at, {300.0}, ControlKind::plain);
+  at.set_horizon(10, 5.0);
+  hold(at, {20.0}, ControlKind::plain);
 }
 
 }  // namespace
