@@ -33,6 +33,13 @@ void add_product(double factor, const Eigen::MatrixXd& a, const Eigen::MatrixXd&
   }
 }
 
+/// out += factor (A^T M D + D^T M A).
+void add_both(double factor, const DynamicsNode& node, Eigen::MatrixXd& out) {
+  Eigen::MatrixXd half = Eigen::MatrixXd::Zero(out.rows(), out.cols());
+  add_product(factor, node.point.A, node.MD, half);
+  out += half + half.transpose();
+}
+
 /// D^T (d2g/dq2) D2 of one bilinear row.
 void add_bilinear(const model::Bilinear& row, double factor, const Eigen::MatrixXd& D, const Eigen::MatrixXd& D2,
                   Eigen::MatrixXd& out) {
@@ -200,8 +207,8 @@ void DiscreteDynamics::closing(int n, Eigen::VectorXd& out) const {
 }
 
 void DiscreteDynamics::update_pieces(DynamicsNode& at, bool along) const {
-  pieces_.multiply_mass(at.point.D, at.MD);
-  if (along) pieces_.multiply_mass(at.point.A, at.MA);
+  pieces_.multiply_mass_of_chart(at.point.D, at.MD);
+  if (along) pieces_.multiply_mass_of_chart(at.point.A, at.MA);
   for (std::size_t p = 0; p < pieces_.pieces.size(); ++p) {
     const Piece& piece = pieces_.pieces[p];
     piece.project(at.point.D, at.J[p]);
@@ -273,13 +280,9 @@ void DiscreteDynamics::add_constant_blocks(int k, DynamicsHessian& out) {
   const auto at = static_cast<std::size_t>(k);
   DynamicsNode& begin = node(k);
   DynamicsNode& end = node(k + 1);
-  if (k == 0) {
-    add_product(1.0 / h_, begin.point.A, begin.MD, out.diagonal[0]);
-    add_product(1.0 / h_, begin.MD, begin.point.A, out.diagonal[0]);
-  }
   const double share = k + 1 < layout_.n_steps ? 2.0 / h_ : 1.0 / h_;
-  add_product(share, end.point.A, end.MD, out.diagonal[at + 1]);
-  add_product(share, end.MD, end.point.A, out.diagonal[at + 1]);
+  if (k == 0) add_both(1.0 / h_, begin, out.diagonal[0]);
+  add_both(share, end, out.diagonal[at + 1]);
   add_product(-1.0 / h_, end.point.A, begin.MD, out.below[at]);
   add_product(-1.0 / h_, end.point.D, begin.MA, out.below[at]);
   pieces_.multiply_mass(a_rate_, M_rate_);

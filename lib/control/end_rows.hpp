@@ -79,7 +79,12 @@ class EndRows {
   double search(Eigen::VectorXd& theta, Eigen::VectorXd& lambda);
   Eigen::MatrixXd free_jacobian();
   void blame(const Eigen::VectorXd& residual);
+  model::IntervalPoint point_at_rest() const;
   void evaluate_forces();
+  /// Weights of q in nu . R of the points and directors.
+  Eigen::VectorXd linear_weights(const Eigen::VectorXd& raw) const;
+  void add_loop_hessian(const Eigen::VectorXd& on_rows, Eigen::VectorXd& y, Eigen::MatrixXd& H,
+                        Eigen::MatrixXd& H_lambda);
   Eigen::MatrixXd stiffness();
 
   EndSetup setup_;

@@ -9,7 +9,7 @@ constexpr std::array<double, 2> sign{-1.0, 1.0};
 template <int m>
 using Square = Eigen::Matrix<double, m, m>;
 template <int m>
-using Local = Eigen::Matrix<double, m, 1>;
+using Vector = Eigen::Matrix<double, m, 1>;
 /// Up to so many coordinates of a piece need no allocation.
 constexpr int few = 12;
 template <int m, int most>
@@ -62,8 +62,8 @@ int choice_of(const IntervalFrame& frame, int control) {
 }
 
 template <int m>
-Local<m> local_rate(const IntervalFrame& frame, const Piece& piece) {
-  Local<m> v = Local<m>::Zero(piece.size);
+Vector<m> local_rate(const IntervalFrame& frame, const Piece& piece) {
+  Vector<m> v = Vector<m>::Zero(piece.size);
   if (piece.rate >= 0) {
     v[0] = (frame.end.theta[piece.rate] - frame.begin.theta[piece.rate]) / frame.h;
   } else {
@@ -94,17 +94,17 @@ void JacobianSink::add_piece(const Piece& piece, const model::LocalExpansion& ex
     const double slope = frame_.control_slope[static_cast<std::size_t>(choice)];
     const auto column = expansion.tangent.col(2 * size + static_cast<Eigen::Index>(c));
     for (std::size_t i = 0; i < 2; ++i) {
-      const Local<m> force = slope * (0.5 * frame_.h * column.head(size) + sign[i] * column.tail(size));
+      const Vector<m> force = slope * (0.5 * frame_.h * column.head(size) + sign[i] * column.tail(size));
       scatter_column(Column<most>(J[i].transpose() * force), piece.columns, choice,
                      i == 0 ? out_.by_w_after[k] : out_.by_w_before[k + 1]);
     }
   }
   if (frame_.layout.step < 0) return;
-  const Local<m> v = local_rate<m>(frame_, piece);
-  const Local<m> F_v = expansion.tangent.block(0, size, size, size) * v;
-  const Local<m> p_v = expansion.tangent.block(size, size, size, size) * v;
+  const Vector<m> v = local_rate<m>(frame_, piece);
+  const Vector<m> F_v = expansion.tangent.block(0, size, size, size) * v;
+  const Vector<m> p_v = expansion.tangent.block(size, size, size, size) * v;
   for (std::size_t i = 0; i < 2; ++i) {
-    const Local<m> force = -0.5 * F_v - sign[i] / frame_.h * p_v;
+    const Vector<m> force = -0.5 * F_v - sign[i] / frame_.h * p_v;
     scatter_vector(Column<most>(J[i].transpose() * force), piece.columns, out_.by_step[k + i]);
   }
 }
@@ -123,55 +123,83 @@ void JacobianSink::add(const model::LocalForms&, const model::LocalExpansion& ex
 }
 
 template <int m, int most>
+struct HessianSink::Local {
+  Vector<m> a;
+  Vector<m> b;
+  Vector<m> v;
+  std::array<Wide<m, most>, 2> J;
+  std::array<Wide<m, most>, 2> A;
+};
+
+template <int m, int most>
+HessianSink::Local<m, most> HessianSink::local(const Piece& piece) const {
+  Local<m, most> at{.a = Vector<m>::Zero(piece.size),
+                    .b = Vector<m>::Zero(piece.size),
+                    .v = local_rate<m>(frame_, piece),
+                    .J = {frame_.begin.J[at_], frame_.end.J[at_]},
+                    .A = {frame_.begin.A[at_], frame_.end.A[at_]}};
+  if (piece.rate >= 0) {
+    at.a[0] = 0.5 * (adjoint_.m_begin[piece.rate] + adjoint_.m_end[piece.rate]);
+    at.b[0] = (adjoint_.m_end[piece.rate] - adjoint_.m_begin[piece.rate]) / frame_.h;
+  } else {
+    piece.apply(adjoint_.a, at.a);
+    piece.apply(adjoint_.b, at.b);
+  }
+  return at;
+}
+
+template <int m, int most>
 void HessianSink::add_piece(const Piece& piece, const model::LocalExpansion& expansion) {
   const Eigen::Index size = piece.size;
   const auto k = static_cast<std::size_t>(frame_.k);
   const double h = frame_.h;
   const Eigen::MatrixXd& T = expansion.tangent;
   const Eigen::MatrixXd& H = *expansion.hessian;
-  const NodeBlocks<m> blocks(T, size, h);
-  Local<m> a = Local<m>::Zero(size);
-  Local<m> b = Local<m>::Zero(size);
-  if (piece.rate >= 0) {
-    a[0] = 0.5 * (adjoint_.m_begin[piece.rate] + adjoint_.m_end[piece.rate]);
-    b[0] = (adjoint_.m_end[piece.rate] - adjoint_.m_begin[piece.rate]) / h;
-  } else {
-    piece.apply(adjoint_.a, a);
-    piece.apply(adjoint_.b, b);
-  }
-  // Gradients of Psi by xi and xi', and of Phi by xi_0, xi_1.
-  const Local<m> by_x = T.topLeftCorner(size, size).transpose() * a + T.block(size, 0, size, size).transpose() * b;
-  const Local<m> p_v_b = T.block(size, size, size, size).transpose() * b;
-  const Local<m> by_v = T.block(0, size, size, size).transpose() * a + p_v_b;
+  const Local<m, most> at = local<m, most>(piece);
   if (piece.rate < 0) {
+    // Gradients of Psi by xi and xi', and of Phi by xi_0, xi_1.
+    const Vector<m> by_x =
+        T.topLeftCorner(size, size).transpose() * at.a + T.block(size, 0, size, size).transpose() * at.b;
+    const Vector<m> by_v =
+        T.block(0, size, size, size).transpose() * at.a + T.block(size, size, size, size).transpose() * at.b;
     for (std::size_t i = 0; i < 2; ++i) {
-      piece.add_transposed(Local<m>(0.5 * h * by_x + sign[i] * by_v), out_.y[k + i]);
+      piece.add_transposed(Vector<m>(0.5 * h * by_x + sign[i] * by_v), out_.y[k + i]);
     }
   }
+  const NodeBlocks<m> blocks(T, size, h);
   const Square<m> H_xx = H.topLeftCorner(size, size);
   const Square<m> H_xv = H.block(0, size, size, size);
   const Square<m> H_vv = H.block(size, size, size, size);
-  const Wide<m, most> J[2] = {frame_.begin.J[at_], frame_.end.J[at_]};
-  const Wide<m, most> A[2] = {frame_.begin.A[at_], frame_.end.A[at_]};
   for (std::size_t i = 0; i < 2; ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
       const Square<m> qq =
           0.25 * h * H_xx + 0.5 * sign[j] * H_xv + 0.5 * sign[i] * H_xv.transpose() + sign[i] * sign[j] / h * H_vv;
-      const Wide<m, most> X = qq.lazyProduct(J[j]) + blocks.B[j][i].transpose().lazyProduct(A[j]);
-      const Wide<m, most> Y = blocks.B[i][j].lazyProduct(J[j]);
-      const Block<most> block = J[i].transpose().lazyProduct(X) + A[i].transpose().lazyProduct(Y);
+      const Wide<m, most> X = qq.lazyProduct(at.J[j]) + blocks.B[j][i].transpose().lazyProduct(at.A[j]);
+      const Wide<m, most> Y = blocks.B[i][j].lazyProduct(at.J[j]);
+      const Block<most> block = at.J[i].transpose().lazyProduct(X) + at.A[i].transpose().lazyProduct(Y);
       scatter(block, piece.columns, piece.columns, i == j ? out_.diagonal[k + i] : out_.below[k]);
     }
   }
+  add_controls(piece, expansion, at);
+  if (frame_.layout.step >= 0) add_step(piece, expansion, at);
+}
+
+template <int m, int most>
+void HessianSink::add_controls(const Piece& piece, const model::LocalExpansion& expansion, const Local<m, most>& at) {
+  const Eigen::Index size = piece.size;
+  const auto k = static_cast<std::size_t>(frame_.k);
+  const double h = frame_.h;
+  const Eigen::MatrixXd& T = expansion.tangent;
+  const Eigen::MatrixXd& H = *expansion.hessian;
   for (std::size_t c = 0; c < piece.controls.size(); ++c) {
     const int choice = choice_of(frame_, piece.controls[c]);
     if (choice < 0) continue;
     const double slope = frame_.control_slope[static_cast<std::size_t>(choice)];
     const auto column = 2 * size + static_cast<Eigen::Index>(c);
     for (std::size_t i = 0; i < 2; ++i) {
-      const Local<m> q_s = slope * (0.5 * h * H.col(column).head(size) + sign[i] * H.col(column).segment(size, size));
-      const Local<m> a_s = slope * (0.5 * h * T.col(column).head(size) + sign[i] * T.col(column).tail(size));
-      const Column<most> by_theta = J[i].transpose() * q_s + A[i].transpose() * a_s;
+      const Vector<m> q_s = slope * (0.5 * h * H.col(column).head(size) + sign[i] * H.col(column).segment(size, size));
+      const Vector<m> a_s = slope * (0.5 * h * T.col(column).head(size) + sign[i] * T.col(column).tail(size));
+      const Column<most> by_theta = at.J[i].transpose() * q_s + at.A[i].transpose() * a_s;
       Eigen::MatrixXd& target = i == 0 ? out_.w_begin[k] : out_.w_end[k];
       for (std::size_t r = 0; r < piece.columns.size(); ++r) {
         target(choice, piece.columns[r]) += by_theta[static_cast<Eigen::Index>(r)];
@@ -183,25 +211,31 @@ void HessianSink::add_piece(const Piece& piece, const model::LocalExpansion& exp
       out_.ww[k](choice, other) += h * slope * frame_.control_slope[static_cast<std::size_t>(other)] *
                                    H(column, 2 * size + static_cast<Eigen::Index>(d));
     }
-    if (frame_.layout.step >= 0) {
-      const Local<m> v = local_rate<m>(frame_, piece);
-      out_.step_w[k][choice] += slope * (a.dot(T.col(column).head(size)) - H.col(column).segment(size, size).dot(v));
-    }
+    out_.step_w[k][choice] +=
+        slope * (at.a.dot(T.col(column).head(size)) - H.col(column).segment(size, size).dot(at.v));
   }
-  if (frame_.layout.step < 0) return;
-  const Local<m> v = local_rate<m>(frame_, piece);
-  const Local<m> F_x_a = T.topLeftCorner(size, size).transpose() * a;
-  const Local<m> F_v = T.block(0, size, size, size) * v;
-  const Local<m> p_v = T.block(size, size, size, size) * v;
-  const Local<m> xv = H_xv * v;
-  const Local<m> vv = H_vv * v + p_v_b;
+}
+
+template <int m, int most>
+void HessianSink::add_step(const Piece& piece, const model::LocalExpansion& expansion, const Local<m, most>& at) {
+  const Eigen::Index size = piece.size;
+  const auto k = static_cast<std::size_t>(frame_.k);
+  const double h = frame_.h;
+  const Eigen::MatrixXd& T = expansion.tangent;
+  const Eigen::MatrixXd& H = *expansion.hessian;
+  const Vector<m> p_v_b = T.block(size, size, size, size).transpose() * at.b;
+  const Vector<m> F_x_a = T.topLeftCorner(size, size).transpose() * at.a;
+  const Vector<m> F_v = T.block(0, size, size, size) * at.v;
+  const Vector<m> p_v = T.block(size, size, size, size) * at.v;
+  const Vector<m> xv = H.block(0, size, size, size) * at.v;
+  const Vector<m> vv = H.block(size, size, size, size) * at.v;
   for (std::size_t i = 0; i < 2; ++i) {
-    const Local<m> q_h = 0.5 * F_x_a - 0.5 * xv - sign[i] / h * vv;
-    const Local<m> a_h = -0.5 * F_v - sign[i] / h * p_v;
-    scatter_vector(Column<most>(J[i].transpose() * q_h + A[i].transpose() * a_h), piece.columns,
+    const Vector<m> q_h = 0.5 * F_x_a - 0.5 * xv - sign[i] / h * (vv + p_v_b);
+    const Vector<m> a_h = -0.5 * F_v - sign[i] / h * p_v;
+    scatter_vector(Column<most>(at.J[i].transpose() * q_h + at.A[i].transpose() * a_h), piece.columns,
                    out_.step_theta[k + i]);
   }
-  out_.step_step += (v.dot(H_vv * v) + 2.0 * p_v_b.dot(v)) / h;
+  out_.step_step += (at.v.dot(vv) + 2.0 * p_v_b.dot(at.v)) / h;
 }
 
 void HessianSink::add(const model::LocalForms&, const model::LocalExpansion& expansion) {

@@ -51,8 +51,17 @@ class HessianSink final : public model::ExpansionSink {
   void add(const model::LocalForms& forms, const model::LocalExpansion& expansion) override;
 
  private:
+  /// A piece's share of the frames.
+  template <int m, int most>
+  struct Local;
+  template <int m, int most>
+  Local<m, most> local(const Piece& piece) const;
   template <int m, int most>
   void add_piece(const Piece& piece, const model::LocalExpansion& expansion);
+  template <int m, int most>
+  void add_controls(const Piece& piece, const model::LocalExpansion& expansion, const Local<m, most>& at);
+  template <int m, int most>
+  void add_step(const Piece& piece, const model::LocalExpansion& expansion, const Local<m, most>& at);
 
   const IntervalFrame& frame_;
   const AdjointFrame& adjoint_;

@@ -56,7 +56,7 @@ void list_mass(const model::Model& model, const model::Chart& chart, PieceList& 
   }
   for (const auto& [place, mass] : sums) {
     if (mass == 0.0) continue;
-    list.mass.push_back({place.first, place.second, mass});
+    list.mass.push_back({place.first, place.second, mass, &chart.columns_of(place.second)});
     std::set<int> columns;
     for (const int dof : {place.first, place.second}) {
       const std::vector<int>& of_dof = chart.columns_of(dof);
@@ -127,6 +127,17 @@ void PieceList::multiply_mass(const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen:
     double* const to = out.data() + c * out.outerStride();
     for (const TripleMass& entry : mass) {
       for (int r = 0; r < 3; ++r) to[entry.row + r] += entry.mass * from[entry.column + r];
+    }
+  }
+}
+
+void PieceList::multiply_mass_of_chart(const Eigen::MatrixXd& D, Eigen::MatrixXd& out) const {
+  out.setZero();
+  for (const TripleMass& entry : mass) {
+    for (const int c : *entry.columns) {
+      const double* const from = D.data() + c * D.rows() + entry.column;
+      double* const to = out.data() + c * out.rows() + entry.row;
+      for (int r = 0; r < 3; ++r) to[r] += entry.mass * from[r];
     }
   }
 }

@@ -35,6 +35,7 @@ struct TripleMass {
   int row = 0;
   int column = 0;
   double mass = 0.0;
+  const std::vector<int>* columns = nullptr;  ///< coordinates that move the column's triple
 };
 
 struct PieceList {
@@ -45,6 +46,8 @@ struct PieceList {
 
   /// out = M x for the constant part of the mass; x, out (n_q, any).
   void multiply_mass(const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen::Ref<Eigen::MatrixXd> out) const;
+  /// The same of a D or A of a chart (n_q, n_v).
+  void multiply_mass_of_chart(const Eigen::MatrixXd& D, Eigen::MatrixXd& out) const;
 };
 
 /// Finds the pieces by one expansion at `at`. `squared` as ExpansionRequest.
