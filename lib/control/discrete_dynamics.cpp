@@ -164,6 +164,7 @@ model::IntervalPoint DiscreteDynamics::point_of(int k) const {
 }
 
 bool DiscreteDynamics::move_to(const Eigen::VectorXd& unknowns) {
+  has_pieces_ = false;
   h_ = layout_.step >= 0 ? unknowns[layout_.step] : problem_.horizon.shortest_step;
   for (int n = 0; n <= layout_.n_steps; ++n) {
     DynamicsNode& at = node(n);
@@ -207,11 +208,11 @@ void DiscreteDynamics::closing(int n, Eigen::VectorXd& out) const {
 }
 
 void DiscreteDynamics::update_pieces(DynamicsNode& at, bool along) const {
-  pieces_.multiply_mass_of_chart(at.point.D, at.MD);
+  if (!has_pieces_) pieces_.multiply_mass_of_chart(at.point.D, at.MD);
   if (along) pieces_.multiply_mass_of_chart(at.point.A, at.MA);
   for (std::size_t p = 0; p < pieces_.pieces.size(); ++p) {
     const Piece& piece = pieces_.pieces[p];
-    piece.project(at.point.D, at.J[p]);
+    if (!has_pieces_) piece.project(at.point.D, at.J[p]);
     if (!along) continue;
     if (piece.rate >= 0) {
       at.A[p].setZero(1, 1);
@@ -264,6 +265,7 @@ void DiscreteDynamics::jacobian(DynamicsJacobian& out) {
     slopes.push_back(choice.kind == ControlKind::squared ? choice.reference * choice.reference : choice.reference);
   }
   for (int n = 0; n <= layout_.n_steps; ++n) update_pieces(node(n), false);
+  has_pieces_ = true;
   for (int k = 0; k < layout_.n_steps; ++k) {
     add_constant_blocks(k, out);
     const IntervalFrame frame{pieces_, layout_, node(k), node(k + 1), interval(k).v, choice_of_control_, slopes, h_, k};
@@ -336,6 +338,7 @@ void DiscreteDynamics::hessian(const Vectors& m, const Vectors& nu, DynamicsHess
     at.chart->evaluate_along(at.theta, m[static_cast<std::size_t>(n)], at.point);
     update_pieces(at, true);
   }
+  has_pieces_ = true;
   for (int k = 0; k < layout_.n_steps; ++k) {
     const auto at = static_cast<std::size_t>(k);
     a_mid_ = 0.5 * (node(k).point.a + node(k + 1).point.a);

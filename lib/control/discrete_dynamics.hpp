@@ -126,6 +126,7 @@ class DiscreteDynamics {
   std::vector<DynamicsNode> nodes_;
   std::vector<DynamicsInterval> intervals_;
   double h_ = 0.0;
+  bool has_pieces_ = false;  // J and MD of the nodes belong to the iterate
   Eigen::VectorXd a_mid_;
   Eigen::VectorXd a_rate_;
   Eigen::VectorXd M_rate_;
