@@ -15,7 +15,7 @@ namespace muldi::pipeline {
 namespace {
 
 constexpr double error_limit = 1e-6;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double shift = 2e-4;  // of the size of the scene: small beside the ranges of stops and cables
 
 /// The same numbers in [-1, 1) on every machine.
 class Numbers {
@@ -41,13 +41,19 @@ CheckedDerivative along(std::string of, const std::function<Eigen::VectorXd(doub
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(1);
   const math::DerivativeError error = math::derivative_error(given, math::difference_jacobian(line, zero, one));
   const math::TaylorTest taylor = math::taylor_test(line, {given}, {.x = zero, .direction = one, .first_step = 1.0});
-  const double scale = given.size() > 0 ? given.lpNorm<Eigen::Infinity>() : 0.0;
-  const bool nothing = scale == 0.0 && error.expected == 0.0;
+  // What is below the round-off of the function is nothing.
+  const double least = 1e-9 * f(0.0).lpNorm<Eigen::Infinity>();
+  const bool nothing =
+      given.lpNorm<Eigen::Infinity>() <= least && std::max(std::abs(error.given), std::abs(error.expected)) <= least;
   return {.of = std::move(of),
           .error = nothing ? 0.0 : error.relative,
           .slope = taylor.slope,
           .expected = 2.0,
           .passed = nothing || error.relative < error_limit};
+}
+
+scene::Named<scene::ControlBounds> bounds_of(const scene::Scene& scene) {
+  return scene.optimal_control ? scene.optimal_control->controls : scene::Named<scene::ControlBounds>{};
 }
 
 /// A point near the start, in general position.
@@ -72,9 +78,12 @@ class ModelCheck {
     u_.resize(model_.controls.size());
     model_.evaluate_controls(0.5 * dt_, u_);
     // A control at zero hides what is multiplied by it.
-    double largest = 1.0;
-    for (const double u : u_) largest = std::max(largest, std::abs(u));
-    for (double& u : u_) u += 0.3 * largest * numbers_.next();
+    for (const double u : u_) largest_control_ = std::max(largest_control_, std::abs(u));
+    const scene::Named<scene::ControlBounds> sought = bounds_of(scene);
+    for (const scene::Entry<scene::ControlBounds>& bounds : sought) {
+      if (bounds.value.max) largest_control_ = std::max(largest_control_, std::abs(*bounds.value.max));
+    }
+    for (double& u : u_) u += 0.3 * largest_control_ * numbers_.next();
     q_ = 0.5 * (q0_ + q1_);
     v_ = (q1_ - q0_) / dt_;
     size_ = 1.0;
@@ -123,7 +132,11 @@ class ModelCheck {
 
   void check(const model::IntervalTerm& term) {
     const std::string name = name_of(term);
-    check_tangents(term, name);
+    if (term.acts_at_ends()) {
+      check_step(term, name);
+    } else {
+      check_tangents(term, name);
+    }
     check_controls(term, name);
     check_rates(term, name);
     check_energies(term, name);
@@ -144,7 +157,7 @@ class ModelCheck {
       math::BlockMatrix K(*model_.pattern);
       K.set_zero();
       term.add_tangent(point(q0_, q1_, q_, v_, u_), one.weights, K);
-      const double step = one.by_velocity ? 0.01 * size_ / dt_ : 0.002 * size_;
+      const double step = one.by_velocity ? shift * size_ / dt_ : shift * size_;
       const Eigen::VectorXd d = step * direction;
       Eigen::VectorXd given = Eigen::VectorXd::Zero(model_.n_q());
       K.multiply(d, given);
@@ -157,9 +170,25 @@ class ModelCheck {
     }
   }
 
+  /// The Newton matrix of a step, for terms that act at its ends.
+  void check_step(const model::IntervalTerm& term, const std::string& name) {
+    const Eigen::VectorXd d = shift * size_ * numbers_.vector(model_.n_q());
+    math::BlockMatrix K(*model_.pattern);
+    K.set_zero();
+    term.add_tangent(point(q0_, q1_, q_, v_, u_), model::TangentWeights::step(dt_), K);
+    Eigen::VectorXd given = Eigen::VectorXd::Zero(model_.n_q());
+    K.multiply(d, given);
+    const auto f = [&](double s) -> Eigen::VectorXd {
+      const Eigen::VectorXd q1 = q1_ + s * d;
+      const model::IntervalForces at = forces(term, 0.5 * (q0_ + q1), (q1 - q0_) / dt_, u_);
+      return at.momentum - 0.5 * dt_ * at.force - at.begin;
+    };
+    found_.push_back(along(name + ": balance of a step by its end", f, given));
+  }
+
   void check_controls(const model::IntervalTerm& term, const std::string& name) {
     for (std::size_t c = 0; c < u_.size(); ++c) {
-      const double step = 0.1 * std::max(std::abs(u_[c]), 1.0);
+      const double step = 0.1 * largest_control_;
       Eigen::VectorXd given = Eigen::VectorXd::Zero(model_.n_q());
       Eigen::VectorXd on_rates = Eigen::VectorXd::Zero(manifold_.n_v());
       term.add_control_force(point(q0_, q1_, q_, v_, u_), static_cast<int>(c), given);
@@ -225,6 +254,7 @@ class ModelCheck {
   Numbers numbers_;
   double dt_ = 0.0;
   double size_ = 1.0;
+  double largest_control_ = 1.0;
   Eigen::VectorXd x0_, x1_, q0_, q1_, q_, v_, y_;
   std::vector<double> u_;
   std::vector<CheckedDerivative> found_;

@@ -49,6 +49,24 @@ Controls simulated_controls(const scene::Scene& scene, const control::Problem& p
   return u;
 }
 
+/// Moves the poses along straight lines in joint coordinates to those that are given for the end.
+void straighten(const control::Problem& problem, std::vector<Eigen::VectorXd>& x) {
+  const model::Manifold& manifold = *problem.model.manifold;
+  Eigen::VectorXd way = Eigen::VectorXd::Zero(manifold.n_v());
+  if (problem.final.x) {
+    manifold.difference(x.front(), *problem.final.x, way);
+  } else {
+    Eigen::VectorXd from(manifold.n_v());
+    manifold.difference(manifold.reference(), x.front(), from);
+    for (const control::CoordinateTarget& target : problem.final.coordinates) {
+      way[target.rate] = target.value - from[target.rate];
+    }
+  }
+  const Eigen::VectorXd first = x.front();
+  const auto n = static_cast<double>(x.size() - 1);
+  for (std::size_t i = 1; i < x.size(); ++i) manifold.retract(first, static_cast<double>(i) / n * way, x[i]);
+}
+
 /// The rows of a matrix in a record.
 std::vector<std::vector<double>> rows_of(const results::ResultFile& file, const std::string& path,
                                          std::size_t n_columns) {
@@ -118,10 +136,12 @@ control::Trajectory make_guess(const scene::Scene& scene, const control::Problem
       clamp(problem, rest.u);
       return rest;
     }
-    case Kind::scene: {
+    case Kind::scene:
+    case Kind::straight: {
       control::Trajectory rest = control::resting_guess(problem, step);
       rest.u = scheduled_controls(problem, step);
       clamp(problem, rest.u);
+      if (guess.kind == Kind::straight) straighten(problem, rest.x);
       return rest;
     }
     case Kind::simulate:

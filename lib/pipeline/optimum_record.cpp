@@ -26,7 +26,8 @@ OptimumRecord::OptimumRecord(results::Recorder& recorder, const scene::Scene& sc
   for (std::size_t i = 0; i < n_stages; ++i) {
     const std::string folder = folder_of(static_cast<int>(i)) + "/iterates/";
     Channels channels;
-    channels.series = recorder.declare_series({.axis = folder + "iteration", .unit = "1", .doc = "iteration"});
+    channels.series =
+        recorder.declare_series({.axis = folder + "iteration", .unit = "1", .doc = "iteration", .expected_rows = 64});
     const auto declare = [&](const char* name, const char* doc, results::ValueType type) {
       return recorder.declare_channel(channels.series, {.path = folder + name, .unit = "1", .doc = doc, .type = type});
     };

@@ -107,9 +107,10 @@ struct RandomGuesses {
   friend bool operator==(const RandomGuesses&, const RandomGuesses&) = default;
 };
 
-/// Where the first stage starts. In the input zero, scene, {simulate: ...}, {from: earlier.h5} or {random: ...}.
+/// Where the first stage starts. In the input zero, scene, straight, {simulate: ...}, {from: earlier.h5} or {random:
+/// ...}.
 struct Guess {
-  enum class Kind { zero, scene, simulate, record, random };
+  enum class Kind { zero, scene, straight, simulate, record, random };
 
   Kind kind = Kind::scene;
   Named<GuessedControl> simulate = {};
@@ -238,12 +239,12 @@ struct OptimalControl {
     visit(Field{.key = "initial", .doc = "what holds at t = 0"}, self.initial);
     visit(Field{.key = "final", .doc = "what holds at the end; default nothing", .need = optional}, self.final);
     visit(Field{.key = "limits", .doc = "what holds at every node", .need = optional}, self.limits);
-    visit(
-        Field{.key = "guess",
-              .doc = "where the first stage starts: zero, scene, {simulate: controls}, {from: earlier.h5} or {random: "
-                     "{starts, seed}}",
-              .need = optional},
-        self.guess);
+    visit(Field{.key = "guess",
+                .doc = "where the first stage starts: zero, scene, straight, {simulate: controls}, {from: earlier.h5} "
+                       "or {random: "
+                       "{starts, seed}}",
+                .need = optional},
+          self.guess);
     visit(Field{.key = "stages", .doc = "optimisations in turn, each from the one before"}, self.stages);
     visit(Field{.key = "replay", .doc = "forward run under the controls that were found", .need = optional},
           self.replay);

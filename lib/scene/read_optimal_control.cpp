@@ -80,18 +80,24 @@ bool read_value(ReadContext& context, const Node& node, const base::Field& field
   return true;
 }
 
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, std::optional<Replay>& value) {
+  return node.is_null() || read_value<Replay>(context, node, field, value.emplace());
+}
+
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, Guess& value) {
   value.origin = context.origin(node.mark);
   const auto refuse = [&] {
-    context.error(node.mark,
-                  "needs zero, scene, {simulate: {control: value}}, {from: earlier.h5} or {random: {starts, seed}}, "
-                  "got " +
-                      (node.is_map() ? std::to_string(node.entries.size()) + " keys" : shown(node)));
+    context.error(
+        node.mark,
+        "needs zero, scene, straight, {simulate: {control: value}}, {from: earlier.h5} or {random: {starts, seed}}, "
+        "got " +
+            (node.is_map() ? std::to_string(node.entries.size()) + " keys" : shown(node)));
     return false;
   };
   if (node.is_scalar()) {
-    const std::optional<std::size_t> word = read_word(context, node, {"zero", "scene"});
-    if (word) value.kind = *word == 0 ? Guess::Kind::zero : Guess::Kind::scene;
+    constexpr Guess::Kind kinds[] = {Guess::Kind::zero, Guess::Kind::scene, Guess::Kind::straight};
+    const std::optional<std::size_t> word = read_word(context, node, {"zero", "scene", "straight"});
+    if (word) value.kind = kinds[*word];
     return word.has_value();
   }
   if (!node.is_map() || node.entries.size() != 1) return refuse();

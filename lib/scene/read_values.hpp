@@ -57,6 +57,8 @@ bool read_value(ReadContext& context, const Node& node, const base::Field& field
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, GuessedControl& value);
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, Horizon& value);
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, Guess& value);
+/// None where it is ~, so that an override can leave the replay out.
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, std::optional<Replay>& value);
 /// `body.point`, as a value or as a key.
 bool read_point_name(ReadContext& context, const Mark& mark, const std::string& text, RecordedPoint& value);
 void read_coordinates(ReadContext& context, const Node& node, const CoordinateField& field,

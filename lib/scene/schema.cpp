@@ -269,7 +269,7 @@ Node schema_of(Tag<Horizon>, const base::Field& field) {
   return any_of({quantity(field), schema_of<Horizon>(Tag<Horizon>{}, field)});
 }
 Node schema_of(Tag<Guess>, const base::Field& field) {
-  return any_of({Node::map().with("enum", Node::sequence({text("zero"), text("scene")})),
+  return any_of({Node::map().with("enum", Node::sequence({text("zero"), text("scene"), text("straight")})),
                  form("simulate", schema_of(Tag<Named<GuessedControl>>{}, field),
                       "forward run under functions of time by control"),
                  form("from", typed("string"), "earlier result of optimise, of any step, finished or not"),

@@ -290,6 +290,8 @@ Node to_node(const Guess& value) {
       return word("zero");
     case Guess::Kind::scene:
       return word("scene");
+    case Guess::Kind::straight:
+      return word("straight");
     case Guess::Kind::simulate:
       return Node::map().with("simulate", section_node(value.simulate));
     case Guess::Kind::record:
