@@ -57,6 +57,23 @@ TEST(Nlp, DerivativesOfABallDrivenByLoads) {
                resting_guess(at.problem, 2.0));
 }
 
+TEST(Nlp, DerivativesOfFreeActuatorsAndOfConsistentInertia) {
+  ControlCase actuator(test::round_actuator(0.0, 0.5));
+  actuator.set_horizon(3, 0.1);
+  actuator.seek_squares(4e4);
+  actuator.start_at_rest();
+  expect_clean(actuator.problem, test::effort_of_fields(1), resting_guess(actuator.problem, 0.1));
+
+  test::RigidSystem system = test::muscle_joint(0.0);
+  for (auto& muscle : system.muscles) muscle.element.inertia = muscles::Inertia::consistent;
+  ControlCase joint(system);
+  joint.set_horizon(3, 10.0);
+  joint.seek_squares(5e4);
+  joint.start_at_rest();
+  joint.problem.controls[1].kind = ControlKind::plain;
+  expect_clean(joint.problem, test::effort_of_fields(2), resting_guess(joint.problem, 10.0));
+}
+
 TEST(Nlp, DerivativesByTheStep) {
   ControlCase at = test::joint_case(4, 10.0);
   at.problem.horizon.longest_step = 20.0;
