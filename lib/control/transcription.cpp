@@ -325,74 +325,15 @@ void Transcription::find_patterns() {
 }
 
 void Transcription::scale_objective(const Trajectory& guess) {
-  const Eigen::VectorXd x = unknowns_of(guess);
-  if (!move_to(x)) return;
+  if (!move_to(unknowns_of(guess))) return;
   Eigen::VectorXd g(layout_.n);
   gradient(g);
-  const double largest = layout_.n > 0 ? g.lpNorm<Eigen::Infinity>() : 0.0;
+  double largest = layout_.n > 0 ? g.lpNorm<Eigen::Infinity>() : 0.0;
+  // Squares may have their minimum at the guess.
+  std::vector<double> second(hessian_entries_.pattern().size());
+  hessian(1.0, Eigen::VectorXd::Zero(n_rows_), second.data());
+  for (const double entry : second) largest = std::max(largest, std::abs(entry));
   if (largest > 0.0 && std::isfinite(largest)) objective_factor_ = 1.0 / largest;
-}
-
-double Transcription::impulse_weight(int node, double step) const {
-  return node == 0 || node == layout_.n_steps ? 0.5 * step : step;
-}
-
-Eigen::VectorXd Transcription::unknowns_of(const Trajectory& trajectory) const {
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(layout_.n);
-  Eigen::VectorXd theta(layout_.n_v);
-  for (int n = 0; n <= layout_.n_steps; ++n) {
-    const auto at = static_cast<std::size_t>(n);
-    dynamics_->node(n).chart->coordinates(trajectory.x[at], theta);
-    x.segment(layout_.theta(n, 0), layout_.n_v) = theta;
-    if (layout_.lambda(n, 0) >= 0 && at < trajectory.multipliers.size()) {
-      x.segment(layout_.lambda(n, 0), layout_.n_c) =
-          impulse_weight(n, trajectory.step) * (dynamics_->node(n).Z.transpose() * trajectory.multipliers[at]);
-    }
-    for (int c = 0; c < layout_.n_u && n < layout_.n_steps; ++c) {
-      const auto control = static_cast<std::size_t>(problem_.controls[static_cast<std::size_t>(c)].control);
-      x[layout_.w(n, c)] = dynamics_->control_unknown(c, trajectory.u[at][control]);
-    }
-  }
-  if (layout_.step >= 0) x[layout_.step] = trajectory.step;
-  if (layout_.equilibrium_lambda >= 0)
-    x.segment(layout_.equilibrium_lambda, layout_.n_c) = ends_[1]->pose_multipliers();
-  x = x.cwiseQuotient(scale_x_);
-  x = x.cwiseMax(bounds_.x_lower).cwiseMin(bounds_.x_upper);
-  if (layout_.peak < 0) return x;
-  for (int k = 0; k < layout_.n_steps; ++k) {
-    for (int c = 0; c < layout_.n_u; ++c) {
-      const double u = dynamics_->control_value(c, x[layout_.w(k, c)]);
-      const double value = objectives_.peak_factors()[static_cast<std::size_t>(c)] * u * u / scale_x_[layout_.peak];
-      x[layout_.peak] = std::max(x[layout_.peak], value);
-    }
-  }
-  return x;
-}
-
-Trajectory Transcription::trajectory_of(const Eigen::VectorXd& x) const {
-  const Eigen::VectorXd unknowns = x.cwiseProduct(scale_x_);
-  Trajectory out{.step = layout_.step >= 0 ? unknowns[layout_.step] : problem_.horizon.shortest_step};
-  for (int n = 0; n <= layout_.n_steps; ++n) {
-    Eigen::VectorXd at(problem_.model.manifold->n_x());
-    dynamics_->node(n).chart->stored(unknowns.segment(layout_.theta(n, 0), layout_.n_v), at);
-    out.x.push_back(std::move(at));
-    if (layout_.n_c > 0) {
-      out.multipliers.push_back(
-          layout_.lambda(n, 0) < 0
-              ? Eigen::VectorXd(Eigen::VectorXd::Zero(problem_.model.manifold->n_loop_rows()))
-              : Eigen::VectorXd(dynamics_->node(n).Z * unknowns.segment(layout_.lambda(n, 0), layout_.n_c) /
-                                impulse_weight(n, out.step)));
-    }
-    if (n == layout_.n_steps) break;
-    std::vector<double> u;
-    problem_.model.evaluate_controls((n + 0.5) * out.step, u);
-    for (int c = 0; c < layout_.n_u; ++c) {
-      u[static_cast<std::size_t>(problem_.controls[static_cast<std::size_t>(c)].control)] =
-          dynamics_->control_value(c, unknowns[layout_.w(n, c)]);
-    }
-    out.u.push_back(std::move(u));
-  }
-  return out;
 }
 
 }  // namespace muldi::control

@@ -301,49 +301,4 @@ void Transcription::write_hessian_blocks() {
   out.add(layout_.step, layout_.step, hessian_.step_step);
 }
 
-Transcription::Place Transcription::row_place(int row) const {
-  for (int end = 0; end < 2; ++end) {
-    const auto e = static_cast<std::size_t>(end);
-    const int node = end == 0 ? 0 : layout_.n_steps;
-    if (row >= end_row_[e] && row < end_row_[e] + ends_[e]->n_rows()) return {ends_[e]->name(row - end_row_[e]), node};
-    if (motions_[e] && row >= motion_row_[e] && row < motion_row_[e] + motions_[e]->n_rows()) {
-      return {end == 0 ? "initial.momentum" : "final.momentum", node};
-    }
-  }
-  if (row >= peak_row_) return {"peak_field", 0};
-  if (row >= turn_row_) return {"longest turn in a step", (row - turn_row_) % layout_.n_steps};
-  if (row >= limit_row_) {
-    const LimitRow& limit = limits_->rows()[static_cast<std::size_t>(row - limit_row_)];
-    return {limit.name, limit.node};
-  }
-  for (int n = layout_.n_steps; n >= 0; --n) {
-    const auto at = static_cast<std::size_t>(n);
-    if (closing_row_[at] >= 0 && row >= closing_row_[at]) return {"closed loops", n};
-    if (balance_row_[at] < 0 || row < balance_row_[at]) continue;
-    if (n == layout_.n_steps) return {"final.momentum", n};
-    return {n == 0 ? "initial.momentum" : "equation of motion", n};
-  }
-  return {"equation of motion", 0};
-}
-
-Transcription::Place Transcription::variable_place(int variable) const {
-  for (int n = layout_.n_steps; n >= 0; --n) {
-    const int first = layout_.theta(n, 0);
-    if (variable < first) continue;
-    const int local = variable - first;
-    if (local < layout_.n_v) {
-      for (const CoordinateLimit& limit : problem_.limits.coordinates) {
-        if (limit.rate == local) return {"limits." + limit.name, n};
-      }
-      return {"", n};
-    }
-    if (n < layout_.n_steps && local < layout_.n_v + layout_.n_u) {
-      const int control = problem_.controls[static_cast<std::size_t>(local - layout_.n_v)].control;
-      return {problem_.model.controls[static_cast<std::size_t>(control)].name, n};
-    }
-    break;
-  }
-  return {variable == layout_.step ? "duration" : "", 0};
-}
-
 }  // namespace muldi::control

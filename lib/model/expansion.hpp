@@ -45,8 +45,8 @@ struct ExpansionRequest {
   /// Of every control of the model: 0 to differentiate by u, else by u^2, in which F must be affine; a value at which
   /// the part that depends on it stands out.
   std::span<const double> squared;
-  const Eigen::VectorXd* a = nullptr;         ///< (n_q) on F; null: no Hessian
-  const Eigen::VectorXd* b = nullptr;         ///< (n_q) on pi
+  const Eigen::VectorXd* a = nullptr;  ///< (n_q) on F; null: no Hessian
+  const Eigen::VectorXd* b = nullptr;  ///< (n_q) on pi
 };
 
 /// A part m/2 (x' . y') of the kinetic energy that does not depend on the state.
@@ -58,7 +58,7 @@ struct MassEntry {
 
 /// A muscle whose field and axial stiffness can be limited, with its length as a function of q.
 struct LimitedMuscle {
-  std::string name = {};             ///< as parts() of its term
+  std::string name = {};               ///< as parts() of its term
   std::vector<LinearPoint> ends = {};  ///< two, or none where the length is an unknown of q
   int entry = -1;                      ///< that unknown
   int control = -1;                    ///< of the model; -1: `constant_field`

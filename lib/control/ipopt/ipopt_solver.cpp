@@ -30,6 +30,9 @@ class Stopwatch {
   Clock::time_point begin_;
 };
 
+// The patterns that Ipopt prints with are its own.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
 /// Keeps what Ipopt prints.
 class TextJournal final : public Ipopt::Journal {
  public:
@@ -47,6 +50,7 @@ class TextJournal final : public Ipopt::Journal {
  private:
   std::string& text_;
 };
+#pragma GCC diagnostic pop
 
 void copy_bounds(const Eigen::VectorXd& lower, const Eigen::VectorXd& upper, Number* l, Number* u) {
   for (Eigen::Index i = 0; i < lower.size(); ++i) {
@@ -55,6 +59,8 @@ void copy_bounds(const Eigen::VectorXd& lower, const Eigen::VectorXd& upper, Num
   }
 }
 
+// Ipopt gives the functions their parameters.
+// NOLINTBEGIN(readability-function-size)
 class Adapter final : public Ipopt::TNLP {
  public:
   Adapter(Nlp& nlp, const Eigen::VectorXd& start, const SolveOptions& options, NlpResult& result)
@@ -191,6 +197,8 @@ class Adapter final : public Ipopt::TNLP {
   bool moved_ = false;
   bool valid_ = false;
 };
+
+// NOLINTEND(readability-function-size)
 
 void set_status(Ipopt::ApplicationReturnStatus status, NlpResult& result) {
   using S = SolveStatus;

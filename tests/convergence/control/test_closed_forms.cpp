@@ -42,6 +42,20 @@ TEST(DoubleIntegrator, EffortIsThatOfTheDiscreteClosedForm) {
   }
 }
 
+TEST(DoubleIntegrator, ScaleOfTheObjectiveDoesNotMoveTheOptimum) {
+  const double h = 0.1;
+  const ControlCase at = rest_to_rest(10, h, 100.0);
+  std::vector<double> first_forces;
+  for (const double scale : {1.0, 1e-14, 1e8}) {
+    const std::vector<WeightedObjective> effort{{1.0, Effort{.factors = {scale}}}};
+    const SolveResult result = solve(at.problem, effort, resting_guess(at.problem, h), {});
+    ASSERT_EQ(result.status, SolveStatus::optimal) << result.sentence;
+    first_forces.push_back(result.trajectory.u[0][0]);
+  }
+  EXPECT_NEAR(first_forces[1], first_forces[0], 1e-7);
+  EXPECT_NEAR(first_forces[2], first_forces[0], 1e-7);
+}
+
 TEST(MinimumTime, IsThatOfTheDiscreteClosedForm) {
   // Full force one half of the time, full brake the other: with sum |c_j| = N^2/4 for even N the duration is the
   // continuous one, 2 sqrt(m d/U); for odd N, sum |c_j| = (N^2 - 1)/4.
