@@ -1,8 +1,12 @@
 /// With all controls given and no condition at the end the problem is the forward simulation.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "support/control_problems.hpp"
 #include "support/linkages.hpp"
+#include "variational/node_values.hpp"
+#include "variational/stepper.hpp"
 
 namespace muldi::control {
 namespace {
@@ -64,6 +68,59 @@ TEST(SquareProblem, FourBarIsTheForwardSimulation) {
   ControlCase at(system);
   at.set_horizon(10, 5.0);
   hold(at, {20.0}, ControlKind::plain);
+}
+
+TEST(SquareProblem, InitialVelocityIsThatOfTheForwardSimulation) {
+  const Eigen::VectorXd rates = Eigen::VectorXd::Constant(1, 2e-3);
+  const double angle = 0.1;
+  const std::vector<std::vector<double>> u(10, {3e4, 1e4});
+  ControlCase given(test::muscle_joint(0.0));
+  given.set_horizon(10, 10.0);
+  given.problem.initial.coordinates = {{.name = "joints.hinge", .rate = 0, .value = angle}};
+  given.problem.initial.momentum = {.kind = MomentumCondition::Kind::rates, .values = rates};
+  const Trajectory forward = simulate_guess(given.problem, 10.0, u);
+  EXPECT_GT(std::abs(forward.x[1][0] - angle), 1e-3);
+
+  // The same pose by a point, so that pose and momentum are unknowns.
+  ControlCase sought(test::muscle_joint(0.0));
+  sought.set_horizon(10, 10.0);
+  sought.problem.initial.points = {{.name = "points.end",
+                                    .point = multibody::body_point(0, Eigen::Vector3d(46.0, 0.0, 0.0)),
+                                    .value = {92.0 * std::cos(angle), 92.0 * std::sin(angle), std::nullopt}}};
+  sought.problem.initial.momentum = given.problem.initial.momentum;
+  for (ControlCase* at : {&given, &sought}) {
+    at->problem.final.momentum.kind = MomentumCondition::Kind::free;
+    for (int c = 0; c < 2; ++c) {
+      const double field = u[0][static_cast<std::size_t>(c)];
+      at->problem.controls.push_back(
+          {.control = c, .kind = ControlKind::squared, .lower = field, .upper = field, .reference = field});
+    }
+    Trajectory guess = resting_guess(at->problem, 10.0);
+    const SolveResult result = solve(at->problem, test::feasibility(), guess, {.tolerance = 1e-11});
+    ASSERT_EQ(result.status, SolveStatus::optimal) << result.sentence;
+    EXPECT_LT(test::distance(*at->model, result.trajectory, forward), 1e-9);
+  }
+}
+
+TEST(FinalVelocity, IsTheOneThatIsAskedFor) {
+  // The rate of the last node, from the momentum of the forward run, is the wanted one.
+  ControlCase at = test::joint_case(20, 10.0);
+  at.problem.final.coordinates.clear();
+  at.problem.final.points = {{.name = "points.end",
+                              .point = multibody::body_point(0, Eigen::Vector3d(46.0, 0.0, 0.0)),
+                              .value = {std::nullopt, 92.0 * std::sin(0.1), std::nullopt}}};
+  at.problem.final.momentum = {.kind = MomentumCondition::Kind::rates, .values = Eigen::VectorXd::Constant(1, 1e-3)};
+  const SolveResult result =
+      solve(at.problem, test::effort_of_fields(2), resting_guess(at.problem, 10.0), {.tolerance = 1e-11});
+  ASSERT_EQ(result.status, SolveStatus::optimal) << result.sentence;
+  variational::State state = test::state_at_rest(*at.model);
+  variational::Stepper stepper(*at.model, 10.0, {});
+  for (const auto& u : result.trajectory.u) stepper.advance(state, u);
+  variational::NodeEvaluator nodes(*at.model, "auto");
+  variational::NodeValues values;
+  ASSERT_TRUE(nodes.evaluate(state, result.trajectory.u.back(), result.trajectory.u.back(), values));
+  EXPECT_NEAR(values.rate[0], 1e-3, 1e-10);
+  EXPECT_NEAR(state.x[0], 0.1, 1e-9);
 }
 
 }  // namespace
