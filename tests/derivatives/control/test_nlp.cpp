@@ -74,6 +74,23 @@ TEST(Nlp, DerivativesOfFreeActuatorsAndOfConsistentInertia) {
   expect_clean(joint.problem, test::effort_of_fields(2), resting_guess(joint.problem, 10.0));
 }
 
+TEST(Nlp, DerivativesOfALongChain) {
+  // More coordinates behind one spring than fit into small blocks.
+  test::RigidSystem system = test::revolute_chain(15);
+  system.springs.push_back({.name = "spring",
+                            .element = {.stiffness = 0.5, .rest_length = 10.0, .damping = 0.2},
+                            .a1 = {multibody::ground, Vector3d(1000.0, 300.0, 100.0)},
+                            .a2 = {14, Vector3d(10.0, 20.0, 5.0)}});
+  system.joint_forces.push_back({.joint = 3, .damping = 1.0, .control = 0});
+  system.controls.push_back({.name = "torque", .unit = {}, .function = 0.0});
+  ControlCase at(system);
+  at.set_horizon(2, 1.0);
+  at.seek_plain(1e3);
+  at.start_at_rest();
+  at.problem.final.momentum.kind = MomentumCondition::Kind::free;
+  expect_clean(at.problem, test::feasibility(), resting_guess(at.problem, 1.0));
+}
+
 TEST(Nlp, DerivativesByTheStep) {
   ControlCase at = test::joint_case(4, 10.0);
   at.problem.horizon.longest_step = 20.0;
