@@ -68,10 +68,8 @@ void TrajectoryRows::balance(long n) {
   q_mid_ = constraint_force_;
   manifold_.add_constraint_forces(state_.q, 1.0, multipliers_, q_mid_);
   manifold_.project(*frame_, q_mid_, projected_);
-  const double terms = std::max({state_.p.lpNorm<Eigen::Infinity>(), half * forces_.force.lpNorm<Eigen::Infinity>(),
-                                 forces_.momentum.lpNorm<Eigen::Infinity>()});
   const double left = projected_.cwiseQuotient(manifold_.rate_scale()).lpNorm<Eigen::Infinity>();
-  report_.residual = terms > 0.0 ? weight * left / terms : 0.0;
+  report_.residual = largest_impulse_ > 0.0 ? weight * left / largest_impulse_ : 0.0;
 }
 
 void TrajectoryRows::advance(long n) {
@@ -102,6 +100,19 @@ void TrajectoryRows::record(NodeRows& rows, long n) {
               .last = n == n_steps_});
 }
 
+void TrajectoryRows::find_largest_impulse() {
+  const Eigen::VectorXd first = state_.q;
+  for (long n = 0; n < n_steps_; ++n) {
+    state_.x = trajectory_.x[static_cast<std::size_t>(n)];
+    manifold_.configuration(state_.x, state_.q);
+    evaluate(n);
+    largest_impulse_ = std::max({largest_impulse_, 0.5 * trajectory_.step * forces_.force.lpNorm<Eigen::Infinity>(),
+                                 forces_.momentum.lpNorm<Eigen::Infinity>()});
+  }
+  state_.x = trajectory_.x.front();
+  state_.q = first;
+}
+
 void TrajectoryRows::begin() {
   const double half = 0.5 * trajectory_.step;
   evaluate(0);
@@ -121,6 +132,7 @@ const Eigen::VectorXd& TrajectoryRows::initial_rates() {
 }
 
 void TrajectoryRows::write(NodeRows& rows) {
+  find_largest_impulse();
   begin();
   for (long n = 0; n < n_steps_; ++n) {
     double jump = 0.0;

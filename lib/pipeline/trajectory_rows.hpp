@@ -27,6 +27,8 @@ class TrajectoryRows {
   /// -G^T lambda (n_q) and lambda at the node, with half the weight at an end.
   void balance(long n);
   void advance(long n);
+  /// Of all intervals: what the residual is relative to, for at rest all terms of a node may be small.
+  void find_largest_impulse();
   void record(NodeRows& rows, long n);
 
   const build::BuiltModel& built_;
@@ -42,6 +44,7 @@ class TrajectoryRows {
   std::unique_ptr<model::Frame> frame_;
   model::IntervalForces forces_;
   model::IntervalWork work_;
+  double largest_impulse_ = 0.0;
   Eigen::VectorXd q1_;
   Eigen::VectorXd q_mid_;
   Eigen::VectorXd v_;

@@ -66,7 +66,8 @@ class Optimise(ProgramTest):
             self.assertIn("optimal_control.final.points", message)
 
     def test_interrupted_keeps_the_best_iterate(self):
-        process = self.start("optimise", SCENES / "elephant_trunk_optimal.yaml", "-o", "a.h5")
+        guess = "optimal_control.guess={random: {starts: 1000, seed: 1}}"
+        process = self.start("optimise", SCENES / "elephant_trunk_optimal.yaml", "-o", "a.h5", "--set", guess)
         code = self.interrupt(process, self.folder / "a.h5", 0.5)
         self.assertEqual(code, 130, self.said())
         self.assertEqual(attribute(self.folder / "a.h5", "status"), "interrupted")
