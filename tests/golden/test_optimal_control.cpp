@@ -5,6 +5,9 @@
 
 #include "base/text.hpp"
 #include "optimal_run.hpp"
+#include "pipeline/initial_state.hpp"
+#include "pipeline/optimal_guess.hpp"
+#include "pipeline/optimal_problem.hpp"
 
 namespace muldi::golden {
 namespace {
@@ -94,6 +97,37 @@ TEST(DoubleIntegratorOptimal, BeyondItsForceIsInfeasible) {
   EXPECT_EQ(variational::name_of(run.found().outcome.status), "infeasible");
   EXPECT_FALSE(run.last().result.worst_constraint.empty());
 }
+
+/// What the solver's own checker says of the first iterate of a scene's last stage.
+control::SolveResult checked_by_the_solver(const std::string& name, const Overrides& overrides) {
+  const scene::Scene scene = shipped(name, overrides);
+  const build::BuiltModel built = build::build_model(scene);
+  variational::State start;
+  EXPECT_TRUE(pipeline::initial_state(scene, built, {}, start).completed());
+  const pipeline::OptimalProblem problem = pipeline::build_optimal_problem(scene, built, start.x);
+  return control::solve(problem.problem, problem.stages.back(), pipeline::make_guess(scene, problem.problem, 0),
+                        {.max_iterations = 1, .check_derivatives = true});
+}
+
+struct CheckedScene {
+  std::string name;
+  Overrides overrides = {};
+};
+class SolversOwnCheck : public testing::TestWithParam<CheckedScene> {};
+
+TEST_P(SolversOwnCheck, FindsNoWrongDerivative) {
+  const control::SolveResult result = checked_by_the_solver(GetParam().name, GetParam().overrides);
+  EXPECT_EQ(result.derivative_errors, 0) << result.derivative_log;
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, SolversOwnCheck,
+                         testing::Values(CheckedScene{"revolute_joint_optimal"},
+                                         CheckedScene{"elephant_trunk_optimal", {"optimal_control.duration=100 ms"}},
+                                         CheckedScene{"double_integrator_optimal"}, CheckedScene{"min_time_slider"},
+                                         CheckedScene{"pendulum_swing_up", {"optimal_control.duration=500 ms"}},
+                                         CheckedScene{"crane_rest_to_rest", {"optimal_control.duration=500 ms"}},
+                                         CheckedScene{"four_bar_optimal", {"optimal_control.duration=100 ms"}}),
+                         [](const auto& one) { return one.param.name; });
 
 class Replay : public testing::TestWithParam<std::string> {};
 
