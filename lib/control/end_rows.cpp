@@ -209,7 +209,7 @@ void EndRows::blame(const Eigen::VectorXd& residual) {
     const LinearRow& row = linear_[static_cast<std::size_t>(worst - n_loop_)];
     why = "cannot be reached: the nearest pose that was found misses it by " +
           base::number_text(std::abs(residual[worst]) / row.scale, 4);
-    if (row.scale == 1.0) why += " in a direction cosine";
+    if (name.find("orientations") != std::string::npos) why += " in a direction cosine";
   } else if (has_equilibrium() && worst >= residual.size() - n_v_) {
     const auto coordinate = worst - (residual.size() - n_v_);
     why = "is at odds with the other conditions of this end: there the joints would have to move on by about " +
