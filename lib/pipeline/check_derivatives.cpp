@@ -60,7 +60,7 @@ scene::Named<scene::ControlBounds> bounds_of(const scene::Scene& scene) {
 class ModelCheck {
  public:
   ModelCheck(const scene::Scene& scene, const build::BuiltModel& built)
-      : built_(built), model_(*built.model), manifold_(*built.manifold) {
+      : model_(*built.model), manifold_(*built.manifold) {
     dt_ = scene.dynamics          ? scene.dynamics->step
           : scene.optimal_control ? scene.optimal_control->duration.max / scene.optimal_control->n_steps()
                                   : 1e-3 / scene.units.si(base::dimension::time);
@@ -248,7 +248,6 @@ class ModelCheck {
     found_.push_back(along(name + ": kinetic energy by velocity", f, given));
   }
 
-  const build::BuiltModel& built_;
   const model::Model& model_;
   const model::Manifold& manifold_;
   Numbers numbers_;

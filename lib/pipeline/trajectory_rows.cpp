@@ -10,8 +10,7 @@ std::span<const double> span_of(const Eigen::VectorXd& x) { return {x.data(), st
 }  // namespace
 
 TrajectoryRows::TrajectoryRows(const build::BuiltModel& built, const control::Trajectory& trajectory)
-    : built_(built),
-      model_(*built.model),
+    : model_(*built.model),
       manifold_(*built.manifold),
       trajectory_(trajectory),
       n_steps_(static_cast<long>(trajectory.u.size())),

@@ -31,7 +31,6 @@ class TrajectoryRows {
   void find_largest_impulse();
   void record(NodeRows& rows, long n);
 
-  const build::BuiltModel& built_;
   const model::Model& model_;
   const model::Manifold& manifold_;
   const control::Trajectory& trajectory_;
