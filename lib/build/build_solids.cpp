@@ -210,6 +210,9 @@ void add_solids(const scene::Scene& scene, ControlTable& controls, BuiltModel& b
     add_conditions(context, entry, mesh, data);
     if (errors.size() > before) continue;
     auto solid = std::make_unique<fem::Solid>(std::move(data));
+    if (std::string note = solid->note(); !note.empty()) {
+      built.notes.push_back(scene::warning_at(entry.origin, std::move(note)));
+    }
     built.solids.push_back(solid.get());
     built.assembled.damping |= solid->is_viscous();
     built.assembled.electric |= solid->unknowns().has_field();

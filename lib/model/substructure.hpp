@@ -40,7 +40,8 @@ struct IncrementSize {
   double positions = 0.0;
   double stage = 0.0;
 
-  double largest() const { return positions > stage ? positions : stage; }
+  /// NaN if one is.
+  double largest() const { return !(positions <= stage) ? positions : stage; }
 };
 
 /// Factorised linearisation of one substructure. Vectors are those of the whole system; a solver reads and writes the
@@ -51,6 +52,12 @@ class SubstructureSolver {
 
   /// Linearises and factorises at the point; false if the matrix is singular to working precision.
   virtual bool factorise(const IntervalPoint& at) = 0;
+  /// The reductions up to the next factorisation solve with the exact derivative at the point, to a relative accuracy
+  /// of the increment, with the factor as preconditioner. Without this they solve with the factor alone, whose matrix
+  /// may be older and lacks what is not symmetric.
+  virtual void linearise(const IntervalPoint& at, double accuracy) {
+    static_cast<void>(at), static_cast<void>(accuracy);
+  }
   /// Negative pivots beyond those that the potentials must have: 0 at a stable equilibrium.
   virtual int unstable_directions() const = 0;
   /// Adds the stiffness of the eliminated part to the blocks of the bodies.

@@ -25,11 +25,13 @@ void SubstructureSet::keep_free(Eigen::VectorXd& rows) const {
   for (const auto& part : model_.substructures) part->keep_free(rows);
 }
 
-double SubstructureSet::size_of(const Eigen::VectorXd& dq, const Eigen::VectorXd& dy) const {
-  double largest = 0.0;
+IncrementSize SubstructureSet::size_of(const Eigen::VectorXd& dq, const Eigen::VectorXd& dy) const {
+  IncrementSize largest;
   for (const auto& part : model_.substructures) {
-    const double size = part->size_of(dq, dy).largest();
-    if (!(size <= largest)) largest = size;  // keeps a NaN
+    const IncrementSize size = part->size_of(dq, dy);
+    // Comparisons that keep a NaN.
+    if (!(size.positions <= largest.positions)) largest.positions = size.positions;
+    if (!(size.stage <= largest.stage)) largest.stage = size.stage;
   }
   return largest;
 }
@@ -46,6 +48,10 @@ double SubstructureSet::largest_row(const Eigen::VectorXd& rows) const {
 bool SubstructureSet::factorise(const IntervalPoint& at) {
   factorised_ = std::all_of(solvers_.begin(), solvers_.end(), [&](auto& solver) { return solver->factorise(at); });
   return factorised_;
+}
+
+void SubstructureSet::linearise(const IntervalPoint& at, double accuracy) {
+  for (auto& solver : solvers_) solver->linearise(at, accuracy);
 }
 
 void SubstructureSet::eliminate(Eigen::VectorXd& bracket, const Eigen::VectorXd& h, math::BlockMatrix& K) {

@@ -22,12 +22,14 @@ class SubstructureSet {
   void settle_stage(const IntervalPoint& at, Eigen::VectorXd& y) const;
   void keep_free(Eigen::VectorXd& rows) const;
   /// Largest entries of an increment over all parts; 0 without parts.
-  double size_of(const Eigen::VectorXd& dq, const Eigen::VectorXd& dy) const;
+  IncrementSize size_of(const Eigen::VectorXd& dq, const Eigen::VectorXd& dy) const;
   /// Largest entry of the rows of the substructures' slices.
   double largest_row(const Eigen::VectorXd& rows) const;
 
   /// False if a matrix is singular.
   bool factorise(const IntervalPoint& at);
+  /// Exact derivatives for the next elimination, see SubstructureSolver::linearise.
+  void linearise(const IntervalPoint& at, double accuracy);
   bool factorised() const { return factorised_; }
   /// Eliminates the parts: their stiffness goes to K, their response to the rows of the bodies in `bracket`.
   void eliminate(Eigen::VectorXd& bracket, const Eigen::VectorXd& h, math::BlockMatrix& K);

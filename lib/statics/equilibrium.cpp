@@ -8,7 +8,8 @@
 namespace muldi::statics {
 namespace {
 
-constexpr double longest_increment = 0.5;  // dimensionless: rad, or sizes of the scene
+constexpr double longest_increment = 0.5;     // dimensionless: rad, or sizes of the scene
+constexpr double longest_displacement = 0.1;  // of a substructure, in its sizes: nodes close to each other move by it
 constexpr int max_halvings = 30;
 constexpr double line_search_goal = 0.9;  // |work of the residual along the increment| relative to the start
 constexpr double free_motion = 1e-11;     // smallest over largest eigenvalue of a motion without stiffness
@@ -137,11 +138,13 @@ Eigen::VectorXd EquilibriumSolver::least_norm(const Eigen::VectorXd& multipliers
   return loop_basis() * (loop_basis().transpose() * multipliers);
 }
 
-double EquilibriumSolver::increment_size() const {
-  double size = dw_.size() > 0 ? dw_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>() : 0.0;
+double EquilibriumSolver::increment_size(double& length) const {
+  const double size = dw_.size() > 0 ? dw_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>() : 0.0;
+  length = size;
   if (parts_.empty()) return size;
-  const double of_parts = parts_.size_of(dq_, dy_);
-  return of_parts <= size ? size : of_parts;
+  const model::IncrementSize of_parts = parts_.size_of(dq_, dy_);
+  length = std::max(size, longest_increment / longest_displacement * of_parts.positions);
+  return of_parts.largest() <= size ? size : of_parts.largest();
 }
 
 void EquilibriumSolver::scale_increment(double factor) {
@@ -198,7 +201,7 @@ double EquilibriumSolver::predict(StaticState& state, std::span<const double> u)
   parts_.eliminate(bracket_, forces_.stage, K_);
   manifold_.project(*frame_, bracket_, r_);
   newton_increment();
-  const double size = parts_.size_of(dq_, dy_);
+  const double size = parts_.size_of(dq_, dy_).largest();
   if (!(size <= longest_increment)) return size;
   StaticState moved = state;
   move(state, 1.0, moved);
@@ -210,7 +213,7 @@ double EquilibriumSolver::distance(const StaticState& a, const StaticState& b) {
   if (parts_.empty()) return 0.0;
   dq_ = a.q - b.q;
   dy_.setZero();
-  return parts_.size_of(dq_, dy_);
+  return parts_.size_of(dq_, dy_).largest();
 }
 
 double EquilibriumSolver::line_search(const StaticState& start, StaticState& trial, std::span<const double> u,
@@ -253,9 +256,10 @@ EquilibriumReport EquilibriumSolver::solve(StaticState& state, std::span<const d
     linearise(at, u);
     if (singular_) return report;
     newton_increment();
-    const double size = increment_size();
+    double length = 0.0;
+    const double size = increment_size(length);
     if (!std::isfinite(size)) return report;
-    if (size > longest_increment) scale_increment(longest_increment / size);
+    if (length > longest_increment) scale_increment(longest_increment / length);
     if (line_search(at, trial, u, report.inadmissible) == 0.0) return report;
     std::swap(at, trial);
     const double largest = std::max(r_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>(), parts_.largest_row(bracket_));

@@ -80,7 +80,8 @@ class EquilibriumSolver {
   /// r_ from bracket_ and the forces on the minimal rates.
   void project_bracket();
   void newton_increment();
-  double increment_size() const;
+  /// Of the increment; `length`: its stage unknowns left out, in which the equations are nearly linear.
+  double increment_size(double& length) const;
   void scale_increment(double factor);
   void move(const StaticState& start, double factor, StaticState& trial) const;
   double line_search(const StaticState& start, StaticState& trial, std::span<const double> u,

@@ -15,6 +15,11 @@ constexpr int max_halvings = 12;
 constexpr double round_off_residual = 1e-12;
 /// A kept factor is made anew where an iteration reduces the increment by less than this.
 constexpr double slow_rate = 0.4;
+/// Accuracy of increments with exact derivatives: that of their own size, between these.
+constexpr double coarsest_accuracy = 1e-2;
+constexpr double finest_accuracy = 1e-6;
+/// Steps that use them from the start after one that needed them.
+constexpr int exact_for_steps = 16;
 /// Violation of the constraints inside substructures that one more iteration takes to round-off.
 constexpr double violation_goal = 1e-12;
 /// Part of a step by which positions are prescribed before its end: where a held control jumps, its old value counts.
@@ -169,6 +174,7 @@ double Stepper::solve(const State& state, std::span<const double> u, StepReport&
   }
   if (!parts_.empty()) {
     if ((wants_factor_ || !parts_.factorised()) && !factorise_parts(at, report)) return failed;
+    if (exact_) parts_.linearise(at, accuracy_);
     parts_.eliminate(bracket_, forces_.stage, K_);
     project_bracket();
   }
@@ -186,8 +192,11 @@ double Stepper::solve(const State& state, std::span<const double> u, StepReport&
     dq_.setZero();
     manifold_.lift(*frame_k_, dw_, dq_);
     parts_.complete(dq_, dy_);
-    const double of_parts = parts_.size_of(dq_, dy_);
-    if (!(of_parts <= size)) size = of_parts;
+    const model::IncrementSize of_parts = parts_.size_of(dq_, dy_);
+    length_ = std::max(size, of_parts.positions);
+    if (!(of_parts.largest() <= size)) size = of_parts.largest();
+  } else {
+    length_ = size;
   }
   if (!std::isfinite(size)) report.sentence = "the Newton increment is not finite";
   return size;
@@ -195,8 +204,10 @@ double Stepper::solve(const State& state, std::span<const double> u, StepReport&
 
 bool Stepper::newton(const State& state, std::span<const double> u, bool keep_factors, StepReport& report) {
   double previous = 0.0;
-  int since_factor = 0;
+  int since_change = 0;  // iterations with the same factor, or with the exact derivative
+  bool is_new = false;   // the factor is of this step
   halvings_ = max_halvings;
+  exact_ = !keep_factors || state.exact_steps > 0;
   for (int iteration = 1; iteration <= options_.max_iterations; ++iteration) {
     evaluate(state, u);
     while (!(forces_.margin > 0.0)) {
@@ -207,19 +218,26 @@ bool Stepper::newton(const State& state, std::span<const double> u, bool keep_fa
     ++report.iterations;
     const int factorisations = report.factorisations;
     wants_factor_ |= !keep_factors;
+    accuracy_ = iteration == 1 ? coarsest_accuracy : std::clamp(previous, finest_accuracy, coarsest_accuracy);
     const double size = solve(state, u, report);
     if (!std::isfinite(size)) return false;
-    since_factor = report.factorisations > factorisations ? 1 : since_factor + 1;
+    since_change = report.factorisations > factorisations ? 1 : since_change + 1;
+    is_new |= report.factorisations > factorisations;
     const bool stagnates = iteration > 3 && size > 0.5 * previous && report.residual < round_off_residual;
-    const bool slow = since_factor > 1 && size > slow_rate * previous && size > options_.tolerance;
+    const bool slow = since_change > 1 && size > slow_rate * previous && size > options_.tolerance;
     if (!parts_.empty() && slow && !stagnates) {
-      wants_factor_ = true;
-      if (size > previous) {
+      // What a new factor does not mend is not in its matrix.
+      const bool use_exact = !exact_ && is_new && since_change == 2;
+      exact_ |= use_exact;
+      wants_factor_ = !use_exact;
+      if (use_exact) since_change = 0;
+      if (size > previous && use_exact) continue;
+      if (size > previous && !exact_) {
         report.sentence = "the increments grow";
         return false;
       }
     }
-    if (size > longest_increment) scale_increment(longest_increment / size);
+    if (length_ > longest_increment) scale_increment(longest_increment / length_);
     apply_increment(state, report);
     if (!report.sentence.empty()) return false;
     if ((size <= options_.tolerance && forces_.violation <= violation_goal) || stagnates) return true;
@@ -370,6 +388,8 @@ void Stepper::finish(State& state, std::span<const double> u, StepReport& report
     state.advance = q_ - state.q;
     state.y = y_;
     if (report.factorisations > 0 || !state.factor.valid) state.factor = factor_;
+    // Tried without again now and then: the exact derivative costs many products.
+    state.exact_steps = exact_ && state.exact_steps == 0 ? exact_for_steps : std::max(0, state.exact_steps - 1);
   }
   state.x = x_;
   state.q = q_;

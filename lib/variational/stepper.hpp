@@ -10,7 +10,7 @@
 /// Z mu = dt lambda_n (dt/2 at the first node). Some terms add to the bracket what depends on q_n itself and to p_{n+1}
 /// what depends on q_{n+1}; substructures add stage rows. Newton's matrix is exact for bodies and muscles; that of
 /// substructures is factorised once and kept while the increments keep falling (performance: a lagged factor with exact
-/// residuals).
+/// residuals); where they do not fall with a new factor either, its exact derivative is used.
 #include <memory>
 #include <span>
 #include <vector>
@@ -136,6 +136,9 @@ class Stepper {
   std::vector<double> u_end_;
   FactorPoint factor_;
   bool wants_factor_ = true;
+  bool exact_ = false;     // increments of substructures by their exact derivatives, not by their factors alone
+  double accuracy_ = 0.0;  // of such increments
+  double length_ = 0.0;    // of the increment, its stage unknowns left out: the equations are nearly linear in these
   int halvings_ = 0;
   double reference_regularity_ = 1.0;
 };

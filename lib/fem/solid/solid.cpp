@@ -41,6 +41,7 @@ Solid::Solid(SolidDescription data)
       weight_(V_),
       phi_(charge_) {
   elements_.volumes(data_.X.data(), nullptr, {.reference = V_.data()});
+  if (is_incompressible()) filter_ = PressureFilter(elements_, unknowns_, V_);
   q_.size = data_.X.size();
   y_.size = n_potentials() + n_pressures();
   if (unknowns_.n_free_potentials() > 0) {
@@ -151,9 +152,11 @@ void Solid::add_volume_step(const model::IntervalPoint& at, model::IntervalForce
   begin.add_gradients(elements_, weight_, positions(out.begin));
   auto rows = pressures(out.stage);
   if (is_incompressible()) {
-    rows = -c * V_.cwiseProduct((end.J.array() - 1.0).matrix());
+    rows = V_.cwiseProduct((end.J.array() - 1.0).matrix());
+    filter_.keep_rows(rows);
     out.margin = std::min(out.margin, end.J.minCoeff());
-    out.violation = std::max(out.violation, (end.J.array() - 1.0).abs().maxCoeff());
+    out.violation = std::max(out.violation, rows.cwiseQuotient(V_).lpNorm<Eigen::Infinity>());
+    rows *= -c;
     return;
   }
   end.add_gradients(elements_, weight_, positions(out.end));
@@ -172,13 +175,14 @@ void Solid::add_volume_rest(const model::IntervalPoint& at, model::IntervalForce
   here.add_gradients(elements_, weight_, positions(out.force));
   auto rows = pressures(out.stage);
   out.margin = std::min(out.margin, here.J.minCoeff());
+  if (is_incompressible()) {
+    rows = -V_.cwiseProduct((here.J.array() - 1.0).matrix());
+    filter_.keep_rows(rows);
+    return;
+  }
   for (int cell = 0; cell < elements_.n_cells(); ++cell) {
-    if (is_incompressible()) {
-      rows[cell] = -V_[cell] * (here.J[cell] - 1.0);
-    } else {
-      const Dilation law = dilation(cell, here.J[cell]);
-      rows[cell] = -V_[cell] * (law.pressure - p[cell]) / law.stiffness;
-    }
+    const Dilation law = dilation(cell, here.J[cell]);
+    rows[cell] = -V_[cell] * (law.pressure - p[cell]) / law.stiffness;
   }
 }
 

@@ -12,6 +12,7 @@
 #include <memory>
 
 #include "fem/solid/potential_solver.hpp"
+#include "fem/solid/pressure_filter.hpp"
 #include "fem/solid/solid_loads.hpp"
 #include "fem/solid/solid_unknowns.hpp"
 #include "fem/solid/volumes.hpp"
@@ -36,6 +37,13 @@ class Solid final : public model::Substructure {
   bool is_viscous() const;
   /// V_e (n_cells).
   const Eigen::VectorXd& cell_volumes() const { return V_; }
+  /// Pressures that exert no force; none but in the incompressible formulations.
+  const PressureFilter& filter() const { return filter_; }
+  const SolidLoads& loads() const { return loads_; }
+  /// The largest potential so far.
+  double potential_scale() const { return potential_scale_; }
+  /// What the user should know of the solid before it moves, or empty.
+  std::string note() const;
   /// U of the mean dilatation, U' and U'' at J for a cell.
   struct Dilation {
     double U = 0.0;
@@ -115,6 +123,7 @@ class Solid final : public model::Substructure {
   double shear_modulus_ = 0.0;
   double mass_ = 0.0;
   std::unique_ptr<PotentialSolver> potential_solver_;
+  PressureFilter filter_;
 
   mutable Eigen::VectorXd force_;
   mutable Eigen::VectorXd momentum_;

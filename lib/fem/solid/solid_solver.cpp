@@ -7,9 +7,15 @@ namespace {
 
 /// Stiffness of the volume in the factors of the incompressible formulations, over what resists the smoothest motion.
 constexpr double augmentation = 3e2;
+/// The same where patterns of pressures are filtered out, against which it works in vain.
+constexpr double filtered_augmentation = 30.0;
 constexpr double pi = 3.14159265358979323846;
-constexpr int max_refinements = 12;
-constexpr double refined = 1e-14;
+constexpr int max_refinements = 60;
+constexpr double accuracy_at_rest = 1e-6;
+constexpr int max_exact_iterations = 60;
+constexpr double refined = 1e-15;
+/// Part of the factor's compliance that is left in the volume rows of an increment; it vanishes with the increment.
+constexpr double proximal = 1e-9;
 
 std::vector<std::vector<int>> electrodes_in(const Solid& solid, model::Linearisation kind) {
   std::vector<std::vector<int>> nodes;
@@ -42,14 +48,19 @@ SolidSolver::SolidSolver(const Solid& solid, model::Linearisation kind)
       pattern_(solid.elements().n_nodes(), block_size_of(solid, kind), solid.elements().cells()),
       slots_(solid.elements().slots_in(pattern_)),
       factor_(pattern_, solid.unknowns().mask(), electrodes_in(solid, kind)),
-      expected_negative_(kind == model::Linearisation::velocity ? 0 : negative_potentials(solid)) {
+      expected_negative_(kind == model::Linearisation::velocity ? 0 : negative_potentials(solid)),
+      residual_(solid),
+      total_(solid),
+      action_(solid),
+      direction_(solid),
+      product_(solid),
+      response_(solid) {
   const Eigen::Index n_nodes = solid.elements().n_nodes();
   rhs_ = Eigen::VectorXd::Zero(factor_.matrix().n_rows());
-  for (Eigen::VectorXd* v : {&dx_, &total_x_, &force_}) *v = Eigen::VectorXd::Zero(3 * n_nodes);
-  for (Eigen::VectorXd* v : {&weight_, &coupling_, &compliance_, &curvature_, &rows_, &dp_, &total_p_}) {
+  for (Eigen::VectorXd* v : {&dx_, &force_}) *v = Eigen::VectorXd::Zero(3 * n_nodes);
+  for (Eigen::VectorXd* v : {&weight_, &coupling_, &compliance_, &curvature_, &rows_, &dp_, &scaled_p_}) {
     *v = Eigen::VectorXd::Zero(solid.n_pressures());
   }
-  total_phi_ = Eigen::VectorXd::Zero(n_nodes);
 }
 
 model::SolverSize SolidSolver::size_of(const Solid& solid, model::Linearisation kind) {
@@ -79,6 +90,7 @@ void SolidSolver::weigh_pressures(const model::IntervalPoint& at) {
   for (Eigen::Index cell = 0; cell < V.size(); ++cell) {
     const auto index = static_cast<std::size_t>(solid_.data().material_of_cell[static_cast<std::size_t>(cell)]);
     double stiffness = augmentation * (solid_.data().shear_moduli[index] + inertia);
+    if (solid_.filter().n_patterns() > 0) stiffness = filtered_augmentation * (solid_.shear_modulus() + inertia);
     if (!solid_.is_incompressible()) stiffness = solid_.dilation(static_cast<int>(cell), lagged_.J[cell]).stiffness;
     compliance_[cell] = scale * V[cell] / stiffness;
     // The penalty of a step would be four times that of mean dilatation, whose c is half as large.
@@ -128,6 +140,9 @@ void SolidSolver::assemble(const model::IntervalPoint& at) {
   }
   factor_.matrix().set_zero();
   solid_.elements().tangent(solid_.fields(at), weights, {}, slots_, factor_.matrix());
+  if (kind_ != Linearisation::velocity) {
+    solid_.loads().add_stiffness(solid_.positions(at.q), at.u, weights.stiffness, factor_.matrix());
+  }
 }
 
 bool SolidSolver::factorise(const model::IntervalPoint& at) {
@@ -140,6 +155,9 @@ bool SolidSolver::factorise(const model::IntervalPoint& at) {
   }
   assemble(at);
   factorised_ = factor_.factorise();
+  accuracy_ = 0.0;
+  // What a pressure on an open surface adds to the stiffness is not symmetric.
+  if (kind_ == model::Linearisation::rest && solid_.loads().has_pressure(at.u)) linearise(at, accuracy_at_rest);
   return factorised_;
 }
 
@@ -155,55 +173,128 @@ void SolidSolver::back_substitute() {
   }
 }
 
-void SolidSolver::reduce(Eigen::VectorXd& bracket, const Eigen::VectorXd& h) {
+/// With the matrix of the factor. For the incompressible formulations a step leaves what the augmentation has let
+/// through to the next iteration.
+void SolidSolver::solve_lagged(const SolidVector& rows, SolidVector& out) {
   const Eigen::Index block = pattern_.block_size();
-  force_ = solid_.positions(bracket);
+  force_ = rows.x;
   if (solid_.has_pressures()) {
-    rows_ = solid_.pressures(h);
+    rows_ = rows.p;
     dp_ = coupling_.cwiseProduct(rows_).cwiseQuotient(compliance_);
     lagged_.add_gradients(solid_.elements(), dp_, force_);
   }
   for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
     rhs_.segment<3>(block * node) = force_.segment<3>(3 * node);
-    if (block == 4) rhs_[4 * node + potential_bit] = potential_rows_ * h[solid_.y_slice().first + node];
+    if (block == 4) rhs_[4 * node + potential_bit] = potential_rows_ * rows.phi[node];
   }
   back_substitute();
-  total_x_ = dx_;
-  total_p_ = dp_;
-  total_phi_.setZero();
+  out.x = dx_;
+  out.p = dp_;
+  out.phi.setZero();
   if (block == 4) {
-    for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) total_phi_[node] = rhs_[4 * node + potential_bit];
+    for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) out.phi[node] = rhs_[4 * node + potential_bit];
   }
-  if (exact() && solid_.is_incompressible()) refine();
+  if (solid_.is_incompressible() && (exact() || solid_.filter().n_patterns() > 1)) refine(out);
 }
 
-/// What the compliance of the factor has let through is given back until the volume rows hold exactly.
-void SolidSolver::refine() {
+void SolidSolver::reduce(Eigen::VectorXd& bracket, const Eigen::VectorXd& h) {
+  residual_.x = solid_.positions(bracket);
+  if (solid_.n_potentials() > 0) residual_.phi = solid_.potentials(h);
+  if (solid_.has_pressures()) residual_.p = solid_.pressures(h);
+  solve_lagged(residual_, total_);
+  if (accuracy_ == 0.0) return;
+  solve_exactly();
+  if (kind_ == model::Linearisation::step) accuracy_ = 0.0;
+}
+
+void SolidSolver::linearise(const model::IntervalPoint& at, double accuracy) {
+  action_.linearise(at);
+  accuracy_ = accuracy;
+}
+
+/// The unknowns in their natural sizes, so that errors of all count alike.
+void SolidSolver::pack(const SolidVector& from, Eigen::VectorXd& to) const {
+  to << from.x / solid_.size(), from.phi / volt(), from.p / solid_.shear_modulus();
+}
+
+void SolidSolver::unpack(const Eigen::VectorXd& from, SolidVector& to) const {
+  to.x = from.head(to.x.size()) * solid_.size();
+  to.phi = from.segment(to.x.size(), to.phi.size()) * volt();
+  to.p = from.tail(to.p.size()) * solid_.shear_modulus();
+}
+
+/// Newton's increment by GMRES on the exact derivative behind the lagged solution: errors are those of the increment.
+void SolidSolver::solve_exactly() {
+  const auto product = [this](const Eigen::VectorXd& d, Eigen::VectorXd& out) {
+    unpack(d, direction_);
+    action_.apply(direction_, product_);
+    solve_lagged(product_, response_);
+    pack(response_, out);
+  };
+  const auto same = [](const Eigen::VectorXd& r, Eigen::VectorXd& z) { z = r; };
+  start_.resize(total_.x.size() + total_.phi.size() + total_.p.size());
+  pack(total_, start_);
+  increment_ = start_;
+  gmres_.solve(product, same, start_, increment_,
+               {.relative_tolerance = accuracy_, .max_iterations = max_exact_iterations});
+  unpack(increment_, total_);
+}
+
+/// What the compliance of the factor has let through is given back until the volume rows hold to round-off. With A the
+/// matrix of the factor, B that of the volume rows, D the compliance: (B A^-1 B^T (1 - delta) + delta D) p = B x -
+/// rows, by conjugate gradients with D^-1 in front, whose eigenvalues are near one where the augmentation dominates;
+/// the tiny part delta bounds pressures with hardly any force. With filtered patterns N, N^T V N = 1, D = d V: the
+/// volume rows hold but for V N a, N^T V p = 0, and elimination of a leaves the same equations less d V N N^T V, for p
+/// with its patterns, which are then left out.
+void SolidSolver::refine(SolidVector& out) {
+  const auto complement = [this](const Eigen::VectorXd& p, Eigen::VectorXd& product) {
+    respond(p);
+    lagged_.project(solid_.elements(), dx_, product);
+    product = (1.0 - proximal) * coupling_.cwiseProduct(product) + proximal * compliance_.cwiseProduct(p);
+    solid_.filter().add_patterns(-compliance_[0] / solid_.cell_volumes()[0], p, product);
+  };
+  const auto inverse_compliance = [this](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
+    z = r.cwiseQuotient(compliance_);
+  };
+  // With the pressures of the factor left out, the rows miss D p by what the factor's own solution says.
+  rows_ = compliance_.cwiseProduct(out.p);
+  out.p.setZero();
+  const math::KrylovLimits limits{.relative_tolerance = refined, .max_iterations = max_refinements};
+  // Beyond a loss of stability the complement has other signs, and so it has for filtered patterns.
+  if (solid_.filter().n_patterns() > 0 ||
+      complement_cg_.solve(complement, inverse_compliance, rows_, out.p, limits).end == math::KrylovEnd::breakdown) {
+    complement_minres_.solve(complement, inverse_compliance, rows_, out.p, limits);
+  }
+  dp_ = (1.0 - proximal) * out.p;
+  respond(dp_);
+  solid_.filter().keep_pressures(out.p);
+  out.x -= dx_;
+  if (pattern_.block_size() == 4) {
+    for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) out.phi[node] -= rhs_[4 * node + potential_bit];
+  }
+}
+
+/// A^-1 B^T p, of which dx_ is the part of the positions.
+void SolidSolver::respond(const Eigen::VectorXd& p) {
   const Eigen::Index block = pattern_.block_size();
-  const double first = dp_.lpNorm<Eigen::Infinity>();
-  for (int i = 0; i < max_refinements && dp_.lpNorm<Eigen::Infinity>() > refined * first; ++i) {
-    rows_ = -compliance_.cwiseProduct(dp_);
-    force_.setZero();
-    dp_ = coupling_.cwiseProduct(rows_).cwiseQuotient(compliance_);
-    lagged_.add_gradients(solid_.elements(), dp_, force_);
-    rhs_.setZero();
-    for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
-      rhs_.segment<3>(block * node) = force_.segment<3>(3 * node);
-    }
-    back_substitute();
-    total_x_ += dx_;
-    total_p_ += dp_;
-    if (block == 4) {
-      for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) total_phi_[node] += rhs_[4 * node + potential_bit];
-    }
+  force_.setZero();
+  scaled_p_ = coupling_.cwiseProduct(p);
+  lagged_.add_gradients(solid_.elements(), scaled_p_, force_);
+  rhs_.setZero();
+  for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
+    rhs_.segment<3>(block * node) = force_.segment<3>(3 * node);
+  }
+  factor_.solve(rhs_);
+  for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
+    dx_.segment<3>(3 * node) = rhs_.segment<3>(block * node);
   }
 }
 
 void SolidSolver::expand(Eigen::VectorXd& dq, Eigen::VectorXd& dy) {
-  solid_.positions(dq) = total_x_;
+  solid_.positions(dq) = total_.x;
   if (dy.size() == 0) return;
-  if (solid_.n_potentials() > 0) solid_.potentials(dy) = total_phi_;
-  if (solid_.has_pressures()) solid_.pressures(dy) = total_p_;
+  if (solid_.n_potentials() > 0) solid_.potentials(dy) = total_.phi;
+  if (solid_.has_pressures()) solid_.pressures(dy) = total_.p;
 }
 
 }  // namespace muldi::fem

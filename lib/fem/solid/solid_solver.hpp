@@ -4,7 +4,8 @@
 /// With the pressures free and D the compliance of their rows, elimination adds w_e g_e g_e^T, w_e = (c V_e)^2 / D_e,
 /// to the matrix of positions and potentials; the incompressible formulations, D = 0, take a finite D_e and repeat. The
 /// gradients g_e are those of the factorisation, in every use of the factor (numerics 1.4; a newer one diverges).
-#include "fem/solid/solid.hpp"
+#include "fem/solid/solid_action.hpp"
+#include "math/krylov.hpp"
 
 namespace muldi::fem {
 
@@ -15,6 +16,7 @@ class SolidSolver final : public model::SubstructureSolver {
   static model::SolverSize size_of(const Solid& solid, model::Linearisation kind);
 
   bool factorise(const model::IntervalPoint& at) override;
+  void linearise(const model::IntervalPoint& at, double accuracy) override;
   int unstable_directions() const override;
   void add_condensed(math::BlockMatrix&) const override {}
   void reduce(Eigen::VectorXd& bracket, const Eigen::VectorXd& h) override;
@@ -26,7 +28,13 @@ class SolidSolver final : public model::SubstructureSolver {
   void weigh_pressures(const model::IntervalPoint& at);
   void assemble(const model::IntervalPoint& at);
   void back_substitute();
-  void refine();
+  void solve_lagged(const SolidVector& rows, SolidVector& out);
+  void solve_exactly();
+  void pack(const SolidVector& from, Eigen::VectorXd& to) const;
+  void unpack(const Eigen::VectorXd& from, SolidVector& to) const;
+  void refine(SolidVector& out);
+  void respond(const Eigen::VectorXd& p);
+  double volt() const { return solid_.potential_scale() > 0.0 ? solid_.potential_scale() : 1.0; }
   bool exact() const { return kind_ != model::Linearisation::step; }
 
   const Solid& solid_;
@@ -46,10 +54,17 @@ class SolidSolver final : public model::SubstructureSolver {
   Eigen::VectorXd dx_;
   Eigen::VectorXd rows_;
   Eigen::VectorXd dp_;
-  Eigen::VectorXd total_x_;
-  Eigen::VectorXd total_phi_;
-  Eigen::VectorXd total_p_;
+  SolidVector residual_;
+  SolidVector total_;
   Eigen::VectorXd force_;
+  Eigen::VectorXd scaled_p_;
+  math::ConjugateGradients complement_cg_;
+  math::Minres complement_minres_;
+  double accuracy_ = 0.0;  // of increments with the exact derivative; 0: none
+  SolidAction action_;
+  math::FlexibleGmres gmres_;
+  SolidVector direction_, product_, response_;
+  Eigen::VectorXd start_, increment_;
 };
 
 }  // namespace muldi::fem
