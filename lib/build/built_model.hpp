@@ -33,8 +33,9 @@ struct BuiltModel {
   std::vector<const fem::Solid*> solids;                          ///< of the model, in the order of the scene
   std::vector<std::unique_ptr<fem::SolidRecords>> solid_records;  ///< of these, referred to by observables
   std::vector<base::Diagnostic> notes;                            ///< small gaps that were closed, and the like
-  std::size_t n_named_controls = 0;  ///< the scene's controls come first; then functions of drives
-  std::string linear = "auto";       ///< linear solver that the scene asks for; it can solve this system
+  std::size_t n_named_controls = 0;   ///< the scene's controls come first; then functions of drives
+  std::string linear = "auto";        ///< linear solver of the bodies that the scene asks for; it can solve this system
+  std::string solid_linear = "auto";  ///< the same of the solids
   Assembled assembled;
 
   /// The joint of the kinematic tree with this index in the scene.

@@ -336,7 +336,7 @@ Outcome initial_state(const scene::Scene& scene, const build::BuiltModel& built,
   built.model->evaluate_controls(scene.dynamics ? 0.5 * scene.dynamics->step : 0.0, u);
   if (earlier) {
     state = state_of(*earlier, scene, *built.model);
-    variational::NodeEvaluator nodes(*built.model, "auto");
+    variational::NodeEvaluator nodes(*built.model, "auto", built.solid_linear);
     nodes.evaluate(state, u, u, values);
     rates = values.rate;
   } else {
@@ -358,7 +358,7 @@ Outcome initial_state(const scene::Scene& scene, const build::BuiltModel& built,
   v.head(manifold.n_q()).setZero();
   manifold.lift(*frame, rates, v);
   add_solid_velocities(scene, built, state.q, v);
-  variational::NodeEvaluator(*built.model, "auto").momentum_of(state.q, v, u, state.p);
+  variational::NodeEvaluator(*built.model, "auto", built.solid_linear).momentum_of(state.q, v, u, state.p);
   state.step = 0;
   state.t = 0.0;
   state.increment = (scene.dynamics ? scene.dynamics->step : 0.0) * rates;

@@ -24,6 +24,7 @@ variational::LoopOptions loop_options(const scene::Scene& scene, const build::Bu
   options.step.tolerance = scene.solver.tolerance;
   options.step.max_iterations = scene.solver.max_iterations;
   options.step.linear = built.linear;
+  options.step.substructures = built.solid_linear;
   return options;
 }
 

@@ -61,7 +61,7 @@ Outcome StaticsRun::run(RunContext& context) {
   }
   options.continuation = said.continuation == scene::Continuation::natural ? statics::Continuation::natural
                                                                            : statics::Continuation::arc_length;
-  options.equilibrium = {.tolerance = scene_.solver.tolerance};
+  options.equilibrium = {.tolerance = scene_.solver.tolerance, .substructures = built_.solid_linear};
   statics::Sweep sweep(*built_.model, std::move(u), std::move(direction), options);
   long row = 0;
   const statics::SweepResult result = sweep.run(state_, {.record =

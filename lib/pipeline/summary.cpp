@@ -46,11 +46,11 @@ std::vector<model::Linearisation> linearisations(const scene::Scene& scene) {
 }
 
 /// The largest solver of a solid, and the bytes of all of them.
-model::SolverSize solver_size(const scene::Scene& scene, const fem::Solid& solid) {
+model::SolverSize solver_size(const scene::Scene& scene, const fem::Solid& solid, const std::string& name) {
   model::SolverSize sum;
   double largest = 0.0;
   for (const model::Linearisation kind : linearisations(scene)) {
-    const model::SolverSize one = solid.solver_size(kind, "auto");
+    const model::SolverSize one = solid.solver_size(kind, name);
     if (one.factor_bytes >= largest) sum.solver = one.solver;
     largest = std::max(largest, one.factor_bytes);
     sum.matrix_bytes += one.matrix_bytes;
@@ -142,7 +142,7 @@ std::string summary(const scene::Scene& scene, const build::BuiltModel& built) {
                    yes_no(assembled.damping), yes_no(assembled.electric), yes_no(!built.solids.empty()));
   double of_solids = 0.0;
   for (const fem::Solid* solid : built.solids) {
-    const model::SolverSize size = solver_size(scene, *solid);
+    const model::SolverSize size = solver_size(scene, *solid, built.solid_linear);
     text += solid_text(scene, *solid, size);
     of_solids += size.matrix_bytes + size.factor_bytes;
   }

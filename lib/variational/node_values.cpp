@@ -2,10 +2,10 @@
 
 namespace muldi::variational {
 
-NodeEvaluator::NodeEvaluator(const model::Model& model, const std::string& linear)
+NodeEvaluator::NodeEvaluator(const model::Model& model, const std::string& linear, const std::string& substructures)
     : model_(model),
       solver_(model.manifold->make_solver(*model.pattern, linear)),
-      parts_(model, model::Linearisation::velocity, "auto"),
+      parts_(model, model::Linearisation::velocity, substructures),
       frame_(model.manifold->make_frame()),
       M_(*model.pattern),
       r_(Eigen::VectorXd::Zero(model.manifold->n_v())),

@@ -24,7 +24,7 @@ struct NodeValues {
 class NodeEvaluator {
  public:
   /// `linear`: solver kind, as StepOptions::linear.
-  NodeEvaluator(const model::Model& model, const std::string& linear);
+  NodeEvaluator(const model::Model& model, const std::string& linear, const std::string& substructures = "auto");
 
   /// Velocities, energies and momenta of `state`; `u_before` and `u_after`: controls of the intervals on both sides.
   /// False if the mass matrix is singular on the free motions.

@@ -8,7 +8,7 @@ TimeLoop::TimeLoop(const model::Model& model, LoopOptions options)
     : model_(model),
       options_(std::move(options)),
       stepper_(model, options_.dt, options_.step),
-      nodes_(model, options_.step.linear),
+      nodes_(model, options_.step.linear, options_.step.substructures),
       u_before_(model.controls.size()),
       u_(model.controls.size()) {}
 

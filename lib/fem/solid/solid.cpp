@@ -235,13 +235,13 @@ void Solid::keep_free(Eigen::VectorXd& rows) const { unknowns_.keep_free_positio
 
 std::unique_ptr<model::SubstructureSolver> Solid::make_solver(model::Linearisation kind,
                                                               const std::string& name) const {
-  static_cast<void>(name);
-  return std::make_unique<SolidSolver>(*this, kind);
+  return std::make_unique<SolidSolver>(*this, kind, name);
 }
 
 model::SolverSize Solid::solver_size(model::Linearisation kind, const std::string& name) const {
-  static_cast<void>(name);
-  return SolidSolver::size_of(*this, kind);
+  return SolidSolver::size_of(*this, kind, name);
 }
+
+void Solid::check_solver(const std::string& name) const { SolidSolver::check(*this, name); }
 
 }  // namespace muldi::fem

@@ -89,6 +89,8 @@ class Solid final : public model::Substructure {
   void settle_stage(const model::IntervalPoint& at, Eigen::VectorXd& y) const override;
   std::unique_ptr<model::SubstructureSolver> make_solver(model::Linearisation kind,
                                                          const std::string& name) const override;
+  /// InputError if the named solver cannot serve the solid.
+  void check_solver(const std::string& name) const;
   model::SolverSize solver_size(model::Linearisation kind, const std::string& name) const override;
   model::IncrementSize size_of(const Eigen::VectorXd& dq, const Eigen::VectorXd& dy) const override;
   void keep_free(Eigen::VectorXd& rows) const override;

@@ -1,6 +1,9 @@
 #include "fem/solid/solid_solver.hpp"
 
+#include <algorithm>
 #include <cmath>
+
+#include "fem/solid/solid_factor.hpp"
 
 namespace muldi::fem {
 namespace {
@@ -24,7 +27,7 @@ std::vector<std::vector<int>> electrodes_in(const Solid& solid, model::Linearisa
   return nodes;
 }
 
-std::string name_with(math::Ordering ordering) { return "solid ldlt (" + std::string(name_of(ordering)) + ")"; }
+std::string name_with(const std::string& linear) { return "solid " + linear; }
 
 int block_size_of(const Solid& solid, model::Linearisation kind) {
   return solid.unknowns().n_free_potentials() > 0 && kind != model::Linearisation::velocity ? 4 : 3;
@@ -40,15 +43,22 @@ int negative_potentials(const Solid& solid) {
   return solid.unknowns().n_free_potentials();
 }
 
+SolverTask task_of(const Solid& solid, model::Linearisation kind) {
+  const bool velocity = kind == model::Linearisation::velocity;
+  return {.kind = kind,
+          .n_unknowns = solid.unknowns().n_free_positions() + (velocity ? 0 : solid.unknowns().n_free_potentials()),
+          .n_negative = velocity ? 0 : negative_potentials(solid)};
+}
+
 }  // namespace
 
-SolidSolver::SolidSolver(const Solid& solid, model::Linearisation kind)
+SolidSolver::SolidSolver(const Solid& solid, model::Linearisation kind, const std::string& name)
     : solid_(solid),
       kind_(kind),
       pattern_(solid.elements().n_nodes(), block_size_of(solid, kind), solid.elements().cells()),
       slots_(solid.elements().slots_in(pattern_)),
-      factor_(pattern_, solid.unknowns().mask(), electrodes_in(solid, kind)),
-      expected_negative_(kind == model::Linearisation::velocity ? 0 : negative_potentials(solid)),
+      expected_negative_(task_of(solid, kind).n_negative),
+      linear_(make_linear(task_of(solid, kind), name, pattern_, solid.unknowns().mask(), electrodes_in(solid, kind))),
       residual_(solid),
       total_(solid),
       action_(solid),
@@ -56,26 +66,39 @@ SolidSolver::SolidSolver(const Solid& solid, model::Linearisation kind)
       product_(solid),
       response_(solid) {
   const Eigen::Index n_nodes = solid.elements().n_nodes();
-  rhs_ = Eigen::VectorXd::Zero(factor_.matrix().n_rows());
+  rhs_ = Eigen::VectorXd::Zero(linear_->matrix().n_rows());
   for (Eigen::VectorXd* v : {&dx_, &force_}) *v = Eigen::VectorXd::Zero(3 * n_nodes);
   for (Eigen::VectorXd* v : {&weight_, &coupling_, &compliance_, &curvature_, &rows_, &dp_, &scaled_p_}) {
     *v = Eigen::VectorXd::Zero(solid.n_pressures());
   }
 }
 
-model::SolverSize SolidSolver::size_of(const Solid& solid, model::Linearisation kind) {
+model::SolverSize SolidSolver::size_of(const Solid& solid, model::Linearisation kind, const std::string& name) {
   const math::SymmetricBlockPattern pattern(solid.elements().n_nodes(), block_size_of(solid, kind),
                                             solid.elements().cells());
-  const math::LdltSize size = math::LdltAnalysis(pattern, solid.unknowns().mask()).size();
   const double block = pattern.block_size();
-  return {.solver = name_with(size.ordering),
-          .matrix_bytes = 8.0 * block * block * pattern.n_blocks(),
-          .factor_bytes = static_cast<double>(size.factor_bytes + size.work_bytes)};
+  model::SolverSize size{.matrix_bytes = 8.0 * block * block * pattern.n_blocks()};
+  const SolverTask task = task_of(solid, kind);
+  if (is_direct(task, name)) {
+    const math::LdltSize factor = math::LdltAnalysis(pattern, solid.unknowns().mask()).size();
+    size.solver = name_with(factor_name(factor.ordering));
+    size.factor_bytes = static_cast<double>(factor.factor_bytes + factor.work_bytes);
+  } else {
+    const SolidIteration::Options options = iteration_for(task, name);
+    size.solver = name_with(SolidIteration::name_of(options));
+    size.factor_bytes = SolidIteration::bytes_of(pattern, options);
+  }
+  return size;
 }
 
-std::string SolidSolver::name() const { return name_with(factor_.size().ordering); }
+void SolidSolver::check(const Solid& solid, const std::string& name) {
+  const SolverTask task = task_of(solid, model::Linearisation::step);
+  if (!is_direct(task, name)) iteration_for(task, name);
+}
 
-int SolidSolver::unstable_directions() const { return factor_.n_negative() - expected_negative_; }
+std::string SolidSolver::name() const { return name_with(linear_->name()); }
+
+int SolidSolver::unstable_directions() const { return linear_->n_negative() - expected_negative_; }
 
 void SolidSolver::weigh_pressures(const model::IntervalPoint& at) {
   using model::Linearisation;
@@ -138,10 +161,10 @@ void SolidSolver::assemble(const model::IntervalPoint& at) {
     coupling_.setZero();
     compliance_.setOnes();
   }
-  factor_.matrix().set_zero();
-  solid_.elements().tangent(solid_.fields(at), weights, {}, slots_, factor_.matrix());
+  linear_->matrix().set_zero();
+  solid_.elements().tangent(solid_.fields(at), weights, {}, slots_, linear_->matrix());
   if (kind_ != Linearisation::velocity) {
-    solid_.loads().add_stiffness(solid_.positions(at.q), at.u, weights.stiffness, factor_.matrix());
+    solid_.loads().add_stiffness(solid_.positions(at.q), at.u, weights.stiffness, linear_->matrix());
   }
 }
 
@@ -154,7 +177,7 @@ bool SolidSolver::factorise(const model::IntervalPoint& at) {
     lagged_.J = Eigen::VectorXd::Ones(solid_.n_pressures());
   }
   assemble(at);
-  factorised_ = factor_.factorise();
+  factorised_ = linear_->factorise();
   accuracy_ = 0.0;
   // What a pressure on an open surface adds to the stiffness is not symmetric.
   if (kind_ == model::Linearisation::rest && solid_.loads().has_pressure(at.u)) linearise(at, accuracy_at_rest);
@@ -163,7 +186,7 @@ bool SolidSolver::factorise(const model::IntervalPoint& at) {
 
 void SolidSolver::back_substitute() {
   const Eigen::Index block = pattern_.block_size();
-  factor_.solve(rhs_);
+  linear_->solve(rhs_);
   for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
     dx_.segment<3>(3 * node) = rhs_.segment<3>(block * node);
   }
@@ -259,7 +282,8 @@ void SolidSolver::refine(SolidVector& out) {
   // With the pressures of the factor left out, the rows miss D p by what the factor's own solution says.
   rows_ = compliance_.cwiseProduct(out.p);
   out.p.setZero();
-  const math::KrylovLimits limits{.relative_tolerance = refined, .max_iterations = max_refinements};
+  const math::KrylovLimits limits{.relative_tolerance = std::max(refined, 10.0 * linear_->accuracy()),
+                                  .max_iterations = max_refinements};
   // Beyond a loss of stability the complement has other signs, and so it has for filtered patterns.
   if (solid_.filter().n_patterns() > 0 ||
       complement_cg_.solve(complement, inverse_compliance, rows_, out.p, limits).end == math::KrylovEnd::breakdown) {
@@ -284,7 +308,7 @@ void SolidSolver::respond(const Eigen::VectorXd& p) {
   for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
     rhs_.segment<3>(block * node) = force_.segment<3>(3 * node);
   }
-  factor_.solve(rhs_);
+  linear_->solve(rhs_);
   for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
     dx_.segment<3>(3 * node) = rhs_.segment<3>(block * node);
   }

@@ -5,15 +5,19 @@
 /// to the matrix of positions and potentials; the incompressible formulations, D = 0, take a finite D_e and repeat. The
 /// gradients g_e are those of the factorisation, in every use of the factor (numerics 1.4; a newer one diverges).
 #include "fem/solid/solid_action.hpp"
+#include "fem/solid/solver_choice.hpp"
 #include "math/krylov.hpp"
 
 namespace muldi::fem {
 
 class SolidSolver final : public model::SubstructureSolver {
  public:
-  SolidSolver(const Solid& solid, model::Linearisation kind);
+  /// `name` as make_linear takes it.
+  SolidSolver(const Solid& solid, model::Linearisation kind, const std::string& name);
   /// By the symbolic analysis alone.
-  static model::SolverSize size_of(const Solid& solid, model::Linearisation kind);
+  static model::SolverSize size_of(const Solid& solid, model::Linearisation kind, const std::string& name);
+  /// InputError for a solver that cannot serve the solid.
+  static void check(const Solid& solid, const std::string& name);
 
   bool factorise(const model::IntervalPoint& at) override;
   void linearise(const model::IntervalPoint& at, double accuracy) override;
@@ -22,7 +26,6 @@ class SolidSolver final : public model::SubstructureSolver {
   void reduce(Eigen::VectorXd& bracket, const Eigen::VectorXd& h) override;
   void expand(Eigen::VectorXd& dq, Eigen::VectorXd& dy) override;
   std::string name() const override;
-  std::ptrdiff_t factor_bytes() const { return factor_.size().factor_bytes; }
 
  private:
   void weigh_pressures(const model::IntervalPoint& at);
@@ -42,8 +45,8 @@ class SolidSolver final : public model::SubstructureSolver {
   bool factorised_ = false;
   math::SymmetricBlockPattern pattern_;
   std::vector<std::int32_t> slots_;
-  SolidFactor factor_;
   int expected_negative_ = 0;
+  std::unique_ptr<SolidLinear> linear_;
   double potential_rows_ = 1.0;  // factor of the rows of the potentials
   Volumes lagged_;
   Eigen::VectorXd weight_;      // w_e
