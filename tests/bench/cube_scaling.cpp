@@ -3,9 +3,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <map>
 
@@ -83,6 +85,54 @@ double exponent(const std::map<int, double>& y) {
   return (count * sxy - sx * sy) / (count * sxx - sx * sx);
 }
 
+/// Microseconds a cell of residual, tangent and scatter on one core.
+double assembly_here(int n) {
+  const std::string cells = std::to_string(n);
+  const bench::ReadyScene ready(scene::read_scene(
+      bench::scene_path("cube_scaling"), {"solids.cube.mesh.box.cells=[" + cells + ", " + cells + ", " + cells + "]"}));
+  const fem::Solid& solid = *ready.built.solids.front();
+  const fem::ElementSet& elements = solid.elements();
+  const math::SymmetricBlockPattern pattern(elements.n_nodes(), 4, elements.cells());
+  math::SymmetricBlockMatrix matrix(pattern);
+  const std::vector<std::int32_t> slots = elements.slots_in(pattern);
+  const Eigen::VectorXd x = elements.reference();
+  const Eigen::VectorXd v = 1e-3 * x;
+  const Eigen::VectorXd phi = solid.potentials(ready.state.y);
+  Eigen::VectorXd force = 0.0 * x;
+  Eigen::VectorXd charge = 0.0 * phi;
+  Eigen::VectorXd momentum = force;
+  const fem::ElementFields at{.x = x.data(), .v = v.data(), .phi = phi.data()};
+  const double seconds = bench::median_seconds(3, [&] {
+    matrix.set_zero();
+    elements.tangent(at, {.mass = 1e4, .stiffness = 2.5e-5, .rate = 0.5, .x_phi = 5e-5, .phi_phi = 1e-4}, {}, slots,
+                     matrix);
+    elements.forces(at, {.force = force.data(), .charge = charge.data(), .momentum = momentum.data()});
+  });
+  return 1e6 * seconds / elements.n_cells();
+}
+
+/// The peer on the same machine, right after ours; nothing where it has not been built.
+void compare_with_peer(bench::BenchReport& report, int n) {
+  const std::string peer = std::string(MULDI_BINARY_DIR) + "/bench/peer_dealii";
+  if (access(peer.c_str(), X_OK) != 0) return;
+  setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 0);
+  setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 0);
+  const double assembly = assembly_here(n);
+  const Measured ours = run_apart(n, "{model: vu, c1: 5.0e-8, c2: 1.0e-9}");
+  FILE* output = popen((peer + " " + std::to_string(n) + " 2").c_str(), "r");
+  MULDI_EXPECT(output != nullptr, "the peer runs");
+  double its_assembly = 0.0, its_steps = 0.0;
+  const int n_read = std::fscanf(output, "%lf %lf", &its_assembly, &its_steps);
+  pclose(output);
+  MULDI_EXPECT(n_read == 2, "the peer's figures");
+  const std::string name = "deal.II 9.4, GMRES + SSOR + ML, " + std::to_string(n) + "^3, ";
+  report.add({"assembly a cell and core", assembly, "us", 3.0});
+  report.add({name + "assembly a cell and core", its_assembly, "us"});
+  report.add({name + "ten steps", its_steps, "s"});
+  report.add({"assembly, ours over the peer's", assembly / its_assembly, "1", 1.0 / 6.0});
+  report.add({"ten steps, ours over the peer's", ours.steps / its_steps, "1", 1.0 / 6.0});
+}
+
 }  // namespace
 
 /// Arguments: the largest number of cells a side, 64 without.
@@ -112,5 +162,6 @@ int main(int argc, char** argv) {
     report.add({std::string(law) + ", exponent of processor time", exponent(time), "1", 1.1});
     report.add({std::string(law) + ", exponent of memory", exponent(memory), "1", 1.1});
   }
+  compare_with_peer(report, std::min(largest, 32));
   report.print();
 }

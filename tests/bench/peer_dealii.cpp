@@ -2,10 +2,11 @@
 /// MULDI_PEERS where libdeal.ii-dev is installed; shares no code with lib/).
 ///
 /// The same equations: one unknown potential a step, variational midpoint rule, Bonet and Wood with the legacy electric
-/// law and Kelvin and Voigt's viscosity, eight Gauss points. Assembly by WorkStream on two threads; the loops know which
-/// component a shape function belongs to: F, P and the tangent are contracted with scalar gradients once a node, and the
-/// 12 x 12 tangent is applied to node pairs. The linear system is solved by GMRES with SSOR on the displacements and ML
-/// (Trilinos' algebraic multigrid) on the potential; Newton's method to the same increments as ours.
+/// law and Kelvin and Voigt's viscosity, eight Gauss points. Assembly by WorkStream on two threads; the loops know
+/// which component a shape function belongs to: F, P and the tangent are contracted with scalar gradients once a node,
+/// and the 12 x 12 tangent is applied to node pairs. The linear system is solved by GMRES with SSOR on the
+/// displacements and ML (Trilinos' algebraic multigrid) on the potential; Newton's method to the same increments as
+/// ours.
 ///
 /// Prints one line: assembly in microseconds a cell and core, seconds of ten steps, of their assembly and of their
 /// solves, iterations, height.
@@ -52,9 +53,9 @@ double since(Clock::time_point start) { return std::chrono::duration<double>(Clo
 struct Law {
   Tensor<2, 3> P;
   Tensor<1, 3> D;
-  std::array<std::array<double, 9>, 9> A;   // dP/dF, weighted, with the viscous part by the rate
-  std::array<std::array<double, 3>, 9> B;   // dP/dE
-  std::array<std::array<double, 3>, 3> C;   // d2Omega/dEdE
+  std::array<std::array<double, 9>, 9> A;  // dP/dF, weighted, with the viscous part by the rate
+  std::array<std::array<double, 3>, 9> B;  // dP/dE
+  std::array<std::array<double, 3>, 3> C;  // d2Omega/dEdE
 };
 
 void evaluate(const Tensor<2, 3>& F, const Tensor<2, 3>& rate, const Tensor<1, 3>& E, bool tangent, Law& law) {
@@ -72,7 +73,7 @@ void evaluate(const Tensor<2, 3>& F, const Tensor<2, 3>& rate, const Tensor<1, 3
   law.P += 0.5 * eta * J * (ft * transpose(rate) * ft + rate * Ci);
   law.D = -2.0 * c1 * E - 2.0 * c2 * (transpose(F) * FE) + eps0 * J * fe;
   if (!tangent) return;
-  // Derivatives of F^-T, of the visous stress by the rate, and of the electric part; weights 1/4 dt and 1/2.
+  // Derivatives of F^-T, of the viscous stress by the rate, and of the electric part; weights 1/4 dt and 1/2.
   const double ka = 0.25 * dt, kr = 0.5;
   for (int i = 0; i < 3; ++i)
     for (int m = 0; m < 3; ++m)
@@ -100,8 +101,7 @@ void evaluate(const Tensor<2, 3>& F, const Tensor<2, 3>& rate, const Tensor<1, 3
       }
   const Tensor<2, 3> Cg = transpose(F) * F;
   for (int k = 0; k < 3; ++k)
-    for (int l = 0; l < 3; ++l)
-      law.C[k][l] = (k == l ? 2.0 * c1 : 0.0) + 2.0 * c2 * Cg[k][l] - eps0 * J * Ci[k][l];
+    for (int l = 0; l < 3; ++l) law.C[k][l] = (k == l ? 2.0 * c1 : 0.0) + 2.0 * c2 * Cg[k][l] - eps0 * J * Ci[k][l];
 }
 
 struct Scratch {
@@ -114,9 +114,9 @@ struct Scratch {
 };
 
 struct Copy {
-  FullMatrix<double> matrix{32, 32};
-  Vector<double> rhs{32};
-  Vector<double> momentum{32};  // to the next node
+  FullMatrix<double> matrix = FullMatrix<double>(32, 32);
+  Vector<double> rhs = Vector<double>(32);
+  Vector<double> momentum = Vector<double>(32);  // to the next node
   std::vector<types::global_dof_index> dofs = std::vector<types::global_dof_index>(32);
 };
 
@@ -297,7 +297,8 @@ class Peer {
       Tensor<1, 3> Cb;
       for (unsigned im = 0; im < 9; ++im) {
         for (unsigned j = 0; j < 3; ++j) {
-          Ab[im][j] = w * (law.A[im][3 * j] * dN[b][0] + law.A[im][3 * j + 1] * dN[b][1] + law.A[im][3 * j + 2] * dN[b][2]);
+          Ab[im][j] =
+              w * (law.A[im][3 * j] * dN[b][0] + law.A[im][3 * j + 1] * dN[b][1] + law.A[im][3 * j + 2] * dN[b][2]);
         }
         Bb[im] = -0.5 * volts * dt * w * (law.B[im][0] * dN[b][0] + law.B[im][1] * dN[b][1] + law.B[im][2] * dN[b][2]);
       }

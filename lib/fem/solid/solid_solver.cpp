@@ -163,7 +163,8 @@ void SolidSolver::assemble(const model::IntervalPoint& at) {
   }
   linear_->matrix().set_zero();
   solid_.elements().tangent(solid_.fields(at), weights, {}, slots_, linear_->matrix());
-  if (kind_ != Linearisation::velocity) {
+  // In steps it is small beside the inertia, and a restart makes the factor without the controls of that time.
+  if (kind_ == Linearisation::rest) {
     solid_.loads().add_stiffness(solid_.positions(at.q), at.u, weights.stiffness, linear_->matrix());
   }
 }
