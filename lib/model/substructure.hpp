@@ -93,6 +93,12 @@ class Substructure : public IntervalTerm {
   virtual SolverSize solver_size(Linearisation kind, const std::string& name) const = 0;
   /// Largest entries of an increment relative to the natural sizes of the part.
   virtual IncrementSize size_of(const Eigen::VectorXd& dq, const Eigen::VectorXd& dy) const = 0;
+  /// Length that its displacements are measured by.
+  virtual double natural_length() const = 0;
+  /// At rest, after the point's forces: adds to `rows` (n_q) and `h` (n_y) the derivatives of the balance and of the
+  /// stage rows when the controls move along `du`, by the loads and by all that the controls prescribe.
+  virtual void add_load_rate(const IntervalPoint& at, std::span<const double> du, Eigen::VectorXd& rows,
+                             Eigen::VectorXd& h) const = 0;
   /// True if positions are prescribed by controls, so that the values at the end of an interval matter.
   virtual bool moves() const = 0;
   /// Zeroes the rows of the balance that are not the part's to solve: prescribed positions.

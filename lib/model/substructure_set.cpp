@@ -34,6 +34,23 @@ double SubstructureSet::size_of(const Eigen::VectorXd& dq, const Eigen::VectorXd
   return largest;
 }
 
+double SubstructureSet::product(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
+  double sum = 0.0;
+  Eigen::Index n_nodes = 0;
+  for (const auto& part : model_.substructures) {
+    const Slice& slice = part->q_slice();
+    const double length = part->natural_length();
+    sum += a.segment(slice.first, slice.size).dot(b.segment(slice.first, slice.size)) / (length * length);
+    n_nodes += slice.size / 3;
+  }
+  return n_nodes > 0 ? sum / static_cast<double>(n_nodes) : 0.0;
+}
+
+void SubstructureSet::add_load_rate(const IntervalPoint& at, std::span<const double> du, Eigen::VectorXd& rows,
+                                    Eigen::VectorXd& h) const {
+  for (const auto& part : model_.substructures) part->add_load_rate(at, du, rows, h);
+}
+
 double SubstructureSet::largest_row(const Eigen::VectorXd& rows) const {
   double largest = 0.0;
   for (const auto& part : model_.substructures) {

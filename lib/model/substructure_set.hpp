@@ -23,6 +23,11 @@ class SubstructureSet {
   void keep_free(Eigen::VectorXd& rows) const;
   /// Largest entries of an increment over all parts; 0 without parts.
   double size_of(const Eigen::VectorXd& dq, const Eigen::VectorXd& dy) const;
+  /// Mean product of the positions' increments over all parts, each in its natural length; 0 without parts.
+  double product(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const;
+  /// See Substructure::add_load_rate.
+  void add_load_rate(const IntervalPoint& at, std::span<const double> du, Eigen::VectorXd& rows,
+                     Eigen::VectorXd& h) const;
   /// Largest entry of the rows of the substructures' slices.
   double largest_row(const Eigen::VectorXd& rows) const;
 

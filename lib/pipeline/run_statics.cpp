@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "pipeline/initial_state.hpp"
 
 namespace muldi::pipeline {
@@ -44,6 +45,23 @@ void StaticsRun::record(const statics::SweepPoint& point) {
               view);
 }
 
+void StaticsRun::report_critical(const std::vector<statics::CriticalPoint>& points, const RunContext& context) {
+  using Kind = statics::CriticalPoint::Kind;
+  for (const Kind kind : {Kind::limit, Kind::branch}) {
+    int number = 0;
+    for (const statics::CriticalPoint& point : points) {
+      if (point.kind != kind) continue;
+      const std::string name = kind == Kind::limit ? "limit_load" : "branch_load";
+      recorder_.set_attribute("statics", ++number == 1 ? name : name + "_" + std::to_string(number), point.load);
+      if (!context.warn) continue;
+      const std::string load = base::format("{:.10g}", point.load);
+      context.warn(kind == Kind::limit
+                       ? "statics: the load turns at the limit point " + load
+                       : "statics: the stability changes at the load " + load + ", where another branch crosses");
+    }
+  }
+}
+
 Outcome StaticsRun::run(RunContext& context) {
   const scene::Statics& said = *scene_.statics;
   std::vector<double> u(built_.model->controls.size());
@@ -77,6 +95,7 @@ Outcome StaticsRun::run(RunContext& context) {
     recorder_.set_attribute("statics", "critical_load_above", result.last_good);
     recorder_.set_attribute("statics", "critical_load_below", result.first_bad);
   }
+  report_critical(result.critical, context);
   const auto status = result.end == End::completed             ? variational::Status::completed
                       : result.end == End::interrupted         ? variational::Status::interrupted
                       : result.end == End::loss_of_equilibrium ? variational::Status::loss_of_equilibrium

@@ -19,6 +19,8 @@ class StaticsRun {
  private:
   void record(const statics::SweepPoint& point);
   double last_load() const;
+  /// Limit points and branches that the arc length has passed: attributes and messages.
+  void report_critical(const std::vector<statics::CriticalPoint>& points, const RunContext& context);
 
   const scene::Scene& scene_;
   const build::BuiltModel& built_;

@@ -83,6 +83,9 @@ class Solid final : public model::Substructure {
                                                          const std::string& name) const override;
   model::SolverSize solver_size(model::Linearisation kind, const std::string& name) const override;
   model::IncrementSize size_of(const Eigen::VectorXd& dq, const Eigen::VectorXd& dy) const override;
+  double natural_length() const override { return size_; }
+  void add_load_rate(const model::IntervalPoint& at, std::span<const double> du, Eigen::VectorXd& rows,
+                     Eigen::VectorXd& h) const override;
   void keep_free(Eigen::VectorXd& rows) const override;
   bool moves() const override { return unknowns_.moves(); }
   void add_multiplier_impulse(const Eigen::VectorXd& q, const Eigen::VectorXd& impulse,

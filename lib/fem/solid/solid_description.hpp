@@ -24,6 +24,8 @@ struct Value {
   double constant = 0.0;
 
   double at(std::span<const double> u) const { return control < 0 ? constant : u[static_cast<std::size_t>(control)]; }
+  /// Its derivative when the controls move along `du`.
+  double rate(std::span<const double> du) const { return control < 0 ? 0.0 : du[static_cast<std::size_t>(control)]; }
   bool is_zero() const { return control < 0 && constant == 0.0; }
 };
 

@@ -80,6 +80,15 @@ void SolidLoads::surface_charge(std::span<const double> u, Eigen::VectorXd& char
   for (const FloatingElectrode& electrode : data_->floating) charge[electrode.nodes.front()] += electrode.charge.at(u);
 }
 
+void SolidLoads::surface_charge_rate(std::span<const double> du, Eigen::VectorXd& charge) const {
+  charge.setZero(data_->X.size() / 3);
+  for (const SurfaceCharge& load : data_->surface_charges) {
+    const double rate = load.value.rate(du);
+    for (std::size_t k = 0; k < load.nodes.size(); ++k) charge[load.nodes[k]] += rate * load.unit[k];
+  }
+  for (const FloatingElectrode& electrode : data_->floating) charge[electrode.nodes.front()] += electrode.charge.rate(du);
+}
+
 double SolidLoads::gravity_energy(const Eigen::Ref<const Eigen::VectorXd>& x) const {
   if (!has_gravity_) return 0.0;
   double sum = 0.0;

@@ -23,6 +23,8 @@ class SolidLoads {
   void add_control_force(const Eigen::Ref<const Eigen::VectorXd>& x, int control, Eigen::Ref<Eigen::VectorXd> f) const;
   /// Charges that are put on the nodes (n_nodes); those of floating electrodes on their first node.
   void surface_charge(std::span<const double> u, Eigen::VectorXd& charge) const;
+  /// The derivative of surface_charge when the controls move along `du`.
+  void surface_charge_rate(std::span<const double> du, Eigen::VectorXd& charge) const;
   /// -m g.x.
   double gravity_energy(const Eigen::Ref<const Eigen::VectorXd>& x) const;
   /// Mass of each node (n_nodes), and their sum.

@@ -69,6 +69,16 @@ void SolidUnknowns::place_potentials(std::span<const double> u, Eigen::Ref<Eigen
   for (const PrescribedPotential& said : data_->potentials) phi[said.node] = said.value.at(u);
 }
 
+void SolidUnknowns::place_position_rates(std::span<const double> du, Eigen::Ref<Eigen::VectorXd> dx) const {
+  for (const PrescribedDisplacement& said : data_->displacements) {
+    dx[3 * static_cast<Eigen::Index>(said.node) + said.component] = said.value.rate(du);
+  }
+}
+
+void SolidUnknowns::place_potential_rates(std::span<const double> du, Eigen::Ref<Eigen::VectorXd> dphi) const {
+  for (const PrescribedPotential& said : data_->potentials) dphi[said.node] = said.value.rate(du);
+}
+
 void SolidUnknowns::keep_free_positions(Eigen::Ref<Eigen::VectorXd> rows) const {
   for (const Eigen::Index i : fixed_positions_) rows[i] = 0.0;
 }

@@ -32,6 +32,9 @@ class SolidUnknowns {
   void place_positions(std::span<const double> u, Eigen::Ref<Eigen::VectorXd> x) const;
   /// Writes the prescribed entries of the potentials (n_nodes).
   void place_potentials(std::span<const double> u, Eigen::Ref<Eigen::VectorXd> phi) const;
+  /// The same for the derivatives when the controls move along `du`.
+  void place_position_rates(std::span<const double> du, Eigen::Ref<Eigen::VectorXd> dx) const;
+  void place_potential_rates(std::span<const double> du, Eigen::Ref<Eigen::VectorXd> dphi) const;
   /// Zeroes the entries of rows of positions that are not free.
   void keep_free_positions(Eigen::Ref<Eigen::VectorXd> rows) const;
   /// Zeroes the rows of prescribed potentials; those of floating electrodes stay.
