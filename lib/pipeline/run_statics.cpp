@@ -18,7 +18,31 @@ StaticsRun::StaticsRun(const scene::Scene& scene, const build::BuiltModel& built
       zero_v_(Eigen::VectorXd::Zero(built.manifold->n_v())),
       constraint_force_(zero_q_) {}
 
-void StaticsRun::prepare() { state_ = starting_point(scene_, built_); }
+void StaticsRun::prepare() {
+  state_ = starting_point(scene_, built_);
+  make_sweep();
+}
+
+void StaticsRun::make_sweep() {
+  const scene::Statics& said = *scene_.statics;
+  std::vector<double> u(built_.model->controls.size());
+  built_.model->evaluate_controls(0.0, u);
+  std::vector<double> direction(u.size(), 0.0);
+  statics::SweepOptions options{.steps = said.steps};
+  if (said.control) {
+    const auto swept = static_cast<std::size_t>(scene_.controls.index(said.control->name));
+    u[swept] = 0.0;
+    direction[swept] = 1.0;
+    options.from = said.from;
+    options.to = *said.to;
+  } else {
+    std::swap(u, direction);
+  }
+  options.continuation = said.continuation == scene::Continuation::natural ? statics::Continuation::natural
+                                                                           : statics::Continuation::arc_length;
+  options.equilibrium = {.tolerance = scene_.solver.tolerance};
+  sweep_.emplace(*built_.model, std::move(u), std::move(direction), options);
+}
 
 double StaticsRun::last_load() const { return scene_.statics->control ? *scene_.statics->to : 1.0; }
 
@@ -64,32 +88,15 @@ void StaticsRun::report_critical(const std::vector<statics::CriticalPoint>& poin
 
 Outcome StaticsRun::run(RunContext& context) {
   const scene::Statics& said = *scene_.statics;
-  std::vector<double> u(built_.model->controls.size());
-  built_.model->evaluate_controls(0.0, u);
-  std::vector<double> direction(u.size(), 0.0);
-  statics::SweepOptions options{.steps = said.steps};
-  if (said.control) {
-    const auto swept = static_cast<std::size_t>(scene_.controls.index(said.control->name));
-    u[swept] = 0.0;
-    direction[swept] = 1.0;
-    options.from = said.from;
-    options.to = *said.to;
-  } else {
-    std::swap(u, direction);
-  }
-  options.continuation = said.continuation == scene::Continuation::natural ? statics::Continuation::natural
-                                                                           : statics::Continuation::arc_length;
-  options.equilibrium = {.tolerance = scene_.solver.tolerance};
-  statics::Sweep sweep(*built_.model, std::move(u), std::move(direction), options);
   long row = 0;
-  const statics::SweepResult result = sweep.run(state_, {.record =
-                                                             [&](const statics::SweepPoint& point) {
-                                                               record(point);
-                                                               if (context.progress) {
-                                                                 context.progress(row++, said.steps, point.load);
-                                                               }
-                                                             },
-                                                         .interrupted = context.interrupted});
+  const statics::SweepResult result = sweep_->run(state_, {.record =
+                                                               [&](const statics::SweepPoint& point) {
+                                                                 record(point);
+                                                                 if (context.progress) {
+                                                                   context.progress(row++, said.steps, point.load);
+                                                                 }
+                                                               },
+                                                           .interrupted = context.interrupted});
   using End = statics::SweepResult::End;
   if (result.end == End::loss_of_equilibrium) {
     recorder_.set_attribute("statics", "critical_load_above", result.last_good);

@@ -155,6 +155,28 @@ void SceneCheck::initial() {
   }
 }
 
+void SceneCheck::check_explicit() {
+  const auto refuse = [&](const std::string& why) { error({"dynamics", "integrator"}, why + ": take midpoint"); };
+  const std::string alone = "the explicit integrator moves solids alone, but the scene has ";
+  if (!scene_.bodies.empty()) refuse(alone + "bodies");
+  if (!scene_.muscles.empty()) refuse(alone + "muscles");
+  if (scene_.solids.empty()) refuse("the explicit integrator moves solids, of which the scene has none");
+  for (const Entry<Solid>& solid : scene_.solids) {
+    if (!solid.value.attach.empty()) refuse(alone + "attachments of solid " + base::in_quotes(solid.name));
+    for (const MaterialName& name : solid.value.material.names()) {
+      const Entry<Material>* material = scene_.materials.find(name.name);
+      if (material == nullptr || context_.failed("materials." + name.name)) continue;
+      if (material->value.viscous) {
+        refuse("the explicit integrator has no damping, but material " + base::in_quotes(name.name) + " is viscous");
+      }
+      if (formulation_of(solid.value, material->value) != Formulation::displacement) {
+        refuse("the explicit integrator goes with `formulation: displacement`, which solid " +
+               base::in_quotes(solid.name) + " does not have");
+      }
+    }
+  }
+}
+
 void SceneCheck::tasks() {
   if (scene_.statics && !failed({"statics"})) {
     const Statics& statics = *scene_.statics;
@@ -170,6 +192,7 @@ void SceneCheck::tasks() {
     context_.add(error_at(recorded.body.origin, "the ground does not move: nothing to record"));
   }
   if (!scene_.dynamics || failed({"dynamics"})) return;
+  if (scene_.dynamics->integrator == Integrator::explicit_scheme) check_explicit();
   const Dynamics& dynamics = *scene_.dynamics;
   const double steps = dynamics.duration / dynamics.step;
   const double most_steps = 2e9;

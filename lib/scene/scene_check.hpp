@@ -47,6 +47,8 @@ class SceneCheck {
   template <class Model>
   void check_muscle_control(const Entry<Muscle>& muscle, const Model& model);
   void check_load(const Entry<Load>& load);
+  /// That the scene holds nothing that the explicit integrator cannot move.
+  void check_explicit();
   /// Both ends of an element that acts between two points.
   void check_two_ends(std::string_view section, std::string_view name, const Attachment& from, const Attachment& to);
   /// That a control, if it exists, is of one of these quantities.

@@ -55,8 +55,7 @@ inline std::span<const base::Word<Integrator>> words(Integrator) {
       {.word = "midpoint", .value = Integrator::midpoint, .doc = "implicit variational integrator of order 2"},
       {.word = "explicit",
        .value = Integrator::explicit_scheme,
-       .doc = "the explicit integrator of solids",
-       .later = true},
+       .doc = "explicit integrator of order 2 for solids of plain displacements without viscosity"},
   };
   return all;
 }

@@ -185,11 +185,15 @@ double EquilibriumSolver::line_search(const StaticState& start, StaticState& tri
     move(start, factor, step_, trial);
     manifold_.configuration(trial.x, q_);
     inadmissible = model_.inadmissible(q_);
-    if (!inadmissible.empty()) continue;
+    if (!inadmissible.empty()) {
+      shortened_by_ = inadmissible;
+      continue;
+    }
     evaluate(trial, u);
     if (!(forces_.margin > 0.0)) {
       inadmissible = model_.inadmissible_anywhere(q_);
       if (inadmissible.empty()) inadmissible = "an element of a solid collapses";
+      shortened_by_ = inadmissible;
       continue;
     }
     if (!parts_.empty()) return factor;
@@ -201,6 +205,13 @@ double EquilibriumSolver::line_search(const StaticState& start, StaticState& tri
 }
 
 EquilibriumReport EquilibriumSolver::solve(StaticState& state, std::span<const double> u) {
+  shortened_by_.clear();
+  EquilibriumReport report = iterate(state, u);
+  if (!report.converged && report.inadmissible.empty()) report.inadmissible = shortened_by_;
+  return report;
+}
+
+EquilibriumReport EquilibriumSolver::iterate(StaticState& state, std::span<const double> u) {
   EquilibriumReport report;
   StaticState at = state;
   StaticState trial = state;

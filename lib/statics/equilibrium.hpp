@@ -49,7 +49,7 @@ struct EquilibriumReport {
   Stability stability = Stability::stable;
   int iterations = 0;
   double residual = 0.0;     ///< relative
-  std::string inadmissible;  ///< why the terms could not be evaluated (collapsed muscle)
+  std::string inadmissible;  ///< why the terms could not be evaluated: collapsed muscle, inverted cell
 };
 
 class EquilibriumSolver {
@@ -108,6 +108,7 @@ class EquilibriumSolver {
   void newton_increment();
   void scale_increment(double factor);
   void measure_residual();
+  EquilibriumReport iterate(StaticState& state, std::span<const double> u);
   double line_search(const StaticState& start, StaticState& trial, std::span<const double> u,
                      std::string& inadmissible);
 
@@ -133,7 +134,8 @@ class EquilibriumSolver {
   StaticMotion step_;
   double terms_ = 0.0;
   double residual_ = 0.0;
-  bool singular_ = false;  // the matrix of a substructure
+  std::string shortened_by_;  // why a step was not taken whole, the last time
+  bool singular_ = false;     // the matrix of a substructure
 };
 
 }  // namespace muldi::statics

@@ -138,6 +138,7 @@ SweepResult Sweep::natural(StaticState& state, const SweepCallbacks& callbacks) 
       result.last_good = load;
       result.first_bad = next;
       result.sentence = base::format("the equilibrium is lost at a load between {:.10g} and {:.10g}", load, next);
+      if (!report.inadmissible.empty()) result.sentence += ": " + report.inadmissible;
       report = solve_at(load, state);
       record(callbacks, load, state, report);
       return result;

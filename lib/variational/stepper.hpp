@@ -17,7 +17,7 @@
 
 #include "model/model.hpp"
 #include "model/substructure_set.hpp"
-#include "variational/state.hpp"
+#include "variational/step_method.hpp"
 
 namespace muldi::variational {
 
@@ -32,35 +32,19 @@ struct StepOptions {
   double loop_limit = 1e-6;            ///< below it, or with a redundant pivot above it, the rank is another
 };
 
-/// What one step reports.
-struct StepReport {
-  Status status = Status::running;
-  std::string sentence;  ///< why it failed
-  int iterations = 0;
-  int factorisations = 0;
-  double residual = 0.0;  ///< largest projected residual relative to the largest term of it
-  model::IntervalWork work;
-  double rotation = 0.0;         ///< largest turn of a body in the step (rad)
-  double loop_regularity = 1.0;  ///< relative to that at the start; 0 where the step passed a change of rank
-  double violation = 0.0;        ///< of the constraints inside substructures at the end, dimensionless
-};
-
-class Stepper {
+class Stepper final : public StepMethod {
  public:
   /// The model must outlive the stepper.
   Stepper(const model::Model& model, double dt, StepOptions options);
 
-  /// Moves `state` one step on with the controls `u` at the middle of the interval; on failure `state` is unchanged.
   /// Allocates nothing after the first call.
-  StepReport advance(State& state, std::span<const double> u);
+  StepReport advance(State& state, std::span<const double> u) override;
 
   double dt() const { return dt_; }
   const StepOptions& options() const { return options_; }
   std::string solver_name() const { return solver_->name(); }
 
-  /// -G^T lambda (n_q) at the node that the last step left, all constraints; the momentum form gives it as the part of
-  /// the equation of motion that the free motions do not see.
-  const Eigen::VectorXd& constraint_force() const { return constraint_force_; }
+  const Eigen::VectorXd& constraint_force() const override { return constraint_force_; }
 
  private:
   /// From where and with which factors of the substructures a step is tried.

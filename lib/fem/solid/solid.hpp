@@ -104,6 +104,8 @@ class Solid final : public model::Substructure {
   std::vector<std::string> parts() const override { return {"solids/" + data_.name}; }
   void energies(const model::NodePoint& at, std::span<model::Energy> out) const override;
   std::string inadmissible(const Eigen::VectorXd& q) const override;
+  /// Steps check the Gauss points in their middle; this looks at the nodes in time.
+  std::string advice(const model::NodePoint& at) const override { return inadmissible(at.q); }
 
  private:
   void add_volume_step(const model::IntervalPoint& at, model::IntervalForces& out) const;
