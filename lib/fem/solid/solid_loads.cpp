@@ -86,7 +86,8 @@ void SolidLoads::surface_charge_rate(std::span<const double> du, Eigen::VectorXd
     const double rate = load.value.rate(du);
     for (std::size_t k = 0; k < load.nodes.size(); ++k) charge[load.nodes[k]] += rate * load.unit[k];
   }
-  for (const FloatingElectrode& electrode : data_->floating) charge[electrode.nodes.front()] += electrode.charge.rate(du);
+  for (const FloatingElectrode& electrode : data_->floating)
+    charge[electrode.nodes.front()] += electrode.charge.rate(du);
 }
 
 double SolidLoads::gravity_energy(const Eigen::Ref<const Eigen::VectorXd>& x) const {
