@@ -26,6 +26,7 @@ Eigen::VectorXd EquilibriumSolver::load_rate(std::span<const double> u, std::spa
   if (!parts_.empty()) {
     Eigen::VectorXd h = Eigen::VectorXd::Zero(model_.n_y());
     parts_.add_load_rate(at, du, rows, h);
+    parts_.keep_free(rows);
     parts_.eliminate(rows, h, K_);
   }
   Eigen::VectorXd projected(n_v);

@@ -25,7 +25,6 @@ void Solid::add_load_rate(const model::IntervalPoint& at, std::span<const double
     loads_.add_control_force(positions(at.q), static_cast<int>(control), force);
     positions(rows) += du[control] * force;
   }
-  unknowns_.keep_free_positions(positions(rows));
   if (where.phi != nullptr) {
     unknowns_.keep_solved_potentials(charge);
     potentials(h) -= charge;

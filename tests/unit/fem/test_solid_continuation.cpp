@@ -139,7 +139,6 @@ TEST(SolidContinuation, TheLoadRateIsTheDerivativeOfTheRows) {
       const model::IntervalPoint at{.q0 = q, .q1 = q, .q = q, .v = zero, .u = u, .y = &y};
       model::IntervalForces forces{.force = zero, .momentum = zero, .begin = zero, .end = zero, .stage = y};
       model->forces(at, forces);
-      solid.keep_free(forces.force);
       VectorXd both(q.size() + y.size());
       both << forces.force, forces.stage;
       VectorXd rows = VectorXd::Zero(q.size());
