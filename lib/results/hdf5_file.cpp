@@ -59,16 +59,9 @@ hid_t text_type() {
   return ready ? type : H5I_INVALID_HID;
 }
 
-/// Once, before any other call. The library's cleanup at exit would trip over a file that could not be closed for want
-/// of space; ours are closed by their owners.
-void prepare() {
-  static const bool done = H5dont_atexit() >= 0 && H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
-  static_cast<void>(done);
-}
-
 /// Latest format (SWMR needs it), values written in place without a detour, no locks of the library: LiveFile has them.
 Id access_properties() {
-  prepare();
+  prepare_thread();
   Id properties(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_libver_bounds(properties.get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
   H5Pset_sieve_buf_size(properties.get(), 0);
@@ -149,6 +142,14 @@ std::pair<Id, Id> select_rows(const Id& data_set, const Shape& shape, std::size_
 }
 
 }  // namespace
+
+/// The library's cleanup at exit would trip over a file that could not be closed for want of space; ours are closed by
+/// their owners.
+void prepare_thread() {
+  static const bool once = H5dont_atexit() >= 0;
+  thread_local const bool silent = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
+  static_cast<void>(once), static_cast<void>(silent);
+}
 
 std::string library_version() {
   unsigned major = 0, minor = 0, release = 0;

@@ -16,6 +16,10 @@ namespace muldi::results::hdf5 {
 /// The version of the library in use, e.g. `1.10.8`.
 std::string library_version();
 
+/// Keeps the library from printing its errors, which become exceptions here. Opening a file does it for the thread that
+/// opens it; another thread that goes on with the file calls it before.
+void prepare_thread();
+
 /// An owned identifier of the library; closed with the object.
 class Id {
  public:

@@ -119,16 +119,24 @@ void Hdf5Recorder::do_start() {
 void Hdf5Recorder::create() {
   claim(output_);
   live_ = LiveFile(output_.path);
-  try {
-    file_ = hdf5::File::create(output_.path);
-    create_content();
-    show();
-  } catch (...) {
-    drop();
-    std::error_code ignored;
-    std::filesystem::remove(output_.path, ignored);
-    throw;
-  }
+  created_ = std::async(std::launch::async, [this] {
+    try {
+      file_ = hdf5::File::create(output_.path);
+      create_content();
+      show();
+    } catch (...) {
+      drop();
+      std::error_code ignored;
+      std::filesystem::remove(output_.path, ignored);
+      throw;
+    }
+  });
+}
+
+void Hdf5Recorder::wait_until_created() {
+  if (!created_.valid()) return;
+  hdf5::prepare_thread();
+  created_.get();
 }
 
 /// Writes what was created and opens the file anew, for rows: data sets are opened when their first rows come.
@@ -258,6 +266,7 @@ void Hdf5Recorder::do_flush(const Checkpoint* checkpoint, std::span<const std::i
     file_.flush();
     live_.open_to_readers(room_);
   };
+  wait_until_created();
   try {
     write_and_show(false);
     write_and_show(true);
@@ -271,6 +280,7 @@ void Hdf5Recorder::do_flush(const Checkpoint* checkpoint, std::span<const std::i
 }
 
 void Hdf5Recorder::do_close(const Ending& ending, const Late& late) {
+  wait_until_created();
   try {
     data_sets_.clear();
     checkpoints_.reset();

@@ -10,6 +10,11 @@
 ///
 /// The axis of a series is written last: rows up to its length are complete whatever happens. After a write error the
 /// file holds all rows of the last flush that succeeded, and the status `write_error` where that can still be written.
+///
+/// A new file is made in a thread of its own, beside the first steps: hundreds of data sets take milliseconds. Whether
+/// the path can be written is known before; other failures come out of the first flush.
+#include <future>
+
 #include "results/checkpoint_store.hpp"
 #include "results/hdf5_file.hpp"
 #include "results/live_file.hpp"
@@ -44,6 +49,8 @@ class Hdf5Recorder final : public Recorder {
 
   void open_to_resume();
   void create();
+  /// Throws what went wrong while the file was made.
+  void wait_until_created();
   void create_content();
   void show();
   void resume();
@@ -65,6 +72,7 @@ class Hdf5Recorder final : public Recorder {
   std::optional<Checkpoint> resume_point_;
   std::vector<std::int64_t> resume_rows_;  ///< by series
   std::uint64_t room_ = 0;                 ///< bytes that a flush may need beyond the end of the file
+  std::future<void> created_;              ///< last, so that its thread ends before what it uses
 };
 
 }  // namespace muldi::results

@@ -83,12 +83,12 @@ TEST(Hdf5Recorder, ShowsRowsOfARunningFileAfterEachFlush) {
   Hdf5Recorder recorder({.path = scratch / "a.h5"});
   Recording recording(recorder);
   recorder.start();
-  EXPECT_EQ(ResultFile(scratch / "a.h5").text("status"), "running");
   std::int64_t n = 0;
-  for (const std::int64_t more : {10, 700, 700, 700}) {
+  for (const std::int64_t more : {1, 10, 700, 700, 700}) {
     recording.append_all(n, n + more);
     n += more;
     recorder.flush();
+    EXPECT_EQ(ResultFile(scratch / "a.h5").text("status"), "running");
     // Another process: here the library would find the file open and show it as the writer sees it.
     const std::string command = RECORDING_PROCESS " read " + (scratch / "a.h5") + " " + std::to_string(n);
     EXPECT_EQ(std::system(command.c_str()), 0);
@@ -229,7 +229,7 @@ TEST(Hdf5Recorder, KeepsCompleteRowsWhenTheDiskIsFull) {
   }
 }
 
-TEST(Hdf5Recorder, LeavesNoFileBehindIfTheStartFails) {
+TEST(Hdf5Recorder, LeavesNoFileBehindIfItCannotBeMade) {
   const Scratch scratch;
   const std::string path = scratch / "a.h5";
   EXPECT_EQ(run_with_file_limit(1000,
@@ -238,6 +238,8 @@ TEST(Hdf5Recorder, LeavesNoFileBehindIfTheStartFails) {
                                     Hdf5Recorder recorder({.path = path});
                                     Recording recording(recorder);
                                     recorder.start();
+                                    recording.append(0);
+                                    recorder.flush();
                                   });
                                   return message == "cannot write '" + path + "': File too large" ? 7 : 8;
                                 }),

@@ -50,6 +50,8 @@ TEST(Info, TellsAKilledRunFromARunningOne) {
   Hdf5Recorder recorder({.path = path});
   Recording recording(recorder);
   recorder.start();
+  recording.append(0);
+  recorder.flush();
   EXPECT_THAT(info(path), testing::HasSubstr("status         running\n"));
   std::filesystem::copy_file(path, scratch / "copy.h5");
   EXPECT_THAT(info(scratch / "copy.h5"),
