@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "app/exit_code.hpp"
+#include "app/look.hpp"
 #include "app/verbs.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
@@ -19,6 +20,7 @@ struct CommandLine {
   std::string first;
   std::string second;
   results::CompareOptions compare;
+  app::LookArguments look;
   bool quiet = false;
   bool no_progress = false;
   int verbose = 0;
@@ -70,6 +72,34 @@ void add_others(CLI::App& program, CommandLine& line) {
   program.add_subcommand("schema", "the JSON Schema of the scene format");
 }
 
+/// The verbs for people: pictures, pages, starter scenes, explanations.
+void add_look(CLI::App& program, app::LookArguments& look) {
+  CLI::App* plot = program.add_subcommand("plot", "curves of one or several result files as a figure");
+  plot->add_option("files", look.files, "result files, also running ones")->required()->type_name("OUT.h5");
+  plot->add_option("--what", look.what,
+                   "what to draw: " + base::joined(app::plot_kinds()) + "; default what the files hold")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("LIST");
+  plot->add_option("-o,--output", look.output, "figure; default <file stem>.svg here")->type_name("FIG.svg|png|pdf");
+
+  CLI::App* report = program.add_subcommand("report", "one page about a result, with plots and an animated view");
+  report->add_option("file", look.files, "result file")->required()->expected(1)->type_name("OUT.h5");
+  report->add_option("-o,--output", look.output, "page; default <file stem>.html here")->type_name("REPORT.html");
+
+  CLI::App* paraview = program.add_subcommand("paraview", "write the side file by which ParaView opens a result");
+  paraview->add_option("file", look.files, "result file")->required()->expected(1)->type_name("OUT.h5");
+
+  CLI::App* starter = program.add_subcommand("new", "a commented scene to begin with");
+  starter->add_option("kind", look.word, app::starter_kinds())->type_name("KIND");
+  starter->add_option("-o,--output", look.output, "scene file; default standard output")->type_name("SCENE.yaml");
+  starter->add_flag("--force", look.force, "overwrite an existing file");
+
+  CLI::App* explain = program.add_subcommand("explain", "meaning, unit, default and range of a key of scenes");
+  explain->add_option("key", look.word, "e.g. muscles.*.section; without it the sections of a scene")
+      ->type_name("KEY.PATH");
+}
+
 int dispatch(const CLI::App& program, CommandLine& line) {
   if (program.got_subcommand("run")) {
     line.run.progress = !line.no_progress;
@@ -78,6 +108,11 @@ int dispatch(const CLI::App& program, CommandLine& line) {
   if (program.got_subcommand("validate")) return app::validate(line.scenes, line.run.overrides);
   if (program.got_subcommand("compare")) return app::compare(line.first, line.second, line.compare);
   if (program.got_subcommand("info")) return app::info(line.first);
+  if (program.got_subcommand("plot")) return app::plot(line.look);
+  if (program.got_subcommand("report")) return app::report(line.look);
+  if (program.got_subcommand("paraview")) return app::paraview(line.look);
+  if (program.got_subcommand("new")) return app::starter(line.look);
+  if (program.got_subcommand("explain")) return app::explain(line.look);
   return app::schema();
 }
 
@@ -151,6 +186,7 @@ int main(int argc, char** argv) {
   program.add_flag("-v", line.verbose, "say more; -vv everything");
   add_run(program, line);
   add_others(program, line);
+  add_look(program, line.look);
   try {
     program.parse(argc, argv);
     if (program.get_subcommands().empty()) throw CLI::RequiredError("a verb");

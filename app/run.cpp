@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "app/drawing.hpp"
 #include "app/earlier_record.hpp"
 #include "app/exit_code.hpp"
 #include "app/interrupt.hpp"
@@ -96,10 +97,8 @@ int run(const RunArguments& arguments) {
   };
   const pipeline::Outcome outcome = pipeline::run(*scene, *built, recorder, context, earlier);
   bar.clear();
-  if (!built->model->histories.empty()) {
-    for (const std::string& side : results::write_xdmf(output.path)) {
-      base::log_verbose(base::format("fields for ParaView: {}", side));
-    }
+  for (const std::string& side : results::write_xdmf(output.path, drawing_of(*scene))) {
+    base::log_verbose(base::format("for ParaView: {}", side));
   }
   report(outcome, output.path);
   report_phases(context.phases);
