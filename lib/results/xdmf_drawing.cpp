@@ -9,7 +9,7 @@
 namespace muldi::results {
 namespace {
 
-constexpr std::size_t max_frames = 400;
+constexpr std::size_t max_frames = 250;
 constexpr int digits = 7;
 
 struct Motion {
