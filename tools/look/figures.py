@@ -1,6 +1,7 @@
 """Panels as figures of matplotlib, ready for print."""
 
 import math
+import re
 
 import matplotlib
 import numpy
@@ -47,9 +48,9 @@ class Formatter(matplotlib.ticker.ScalarFormatter):
     """Plain numbers with a power of ten beside the axis; formulas on every tick would take most of the time of a figure."""
 
     def get_offset(self):
-        offset = super().get_offset()
-        mantissa, _, power = offset.partition("e")
-        return rf"{mantissa if mantissa != '1' else ''}$\times 10^{{{int(power)}}}$" if power and "e" not in power and "+" not in mantissa else offset
+        offset = super().get_offset().replace("\u2212", "-")
+        power = re.fullmatch(r"1e([+-]?[0-9]+)", offset)
+        return rf"$\times 10^{{{int(power.group(1))}}}$" if power else offset
 
 
 def line(colour, dashes, label):
