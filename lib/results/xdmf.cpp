@@ -90,6 +90,7 @@ class Writer {
   std::string text(const std::vector<Fields>& all, const std::string& drawn) {
     text_ = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n";
     for (const Fields& fields : all) {
+      ++collection_;
       const std::string name = fields.folder.substr(fields.folder.rfind('/') + 1);
       text_ +=
           base::format("    <Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Temporal\">\n", escaped(name));
@@ -109,11 +110,16 @@ class Writer {
     const auto is_position = [](const Field& field) { return field.name == "position"; };
     const auto position = std::find_if(fields.fields.begin(), fields.fields.end(), is_position);
     if (position != fields.fields.end()) {
+      // By reference: ParaView complains about a geometry that is cut out of a data set, though it reads it.
+      text_ +=
+          base::format("          <DataItem Reference=\"XML\">/Xdmf/Domain/Grid[{}]/Grid[{}]/DataItem</DataItem>\n",
+                       collection_, row + 1);
+      text_ += "        </Geometry>\n";
       add_row(fields.folder + "/position", position->shape, row);
     } else {
       add_whole(fields.folder + "/reference", {fields.n_nodes, 3}, "Float");
+      text_ += "        </Geometry>\n";
     }
-    text_ += "        </Geometry>\n";
     for (const Field& field : fields.fields) {
       if (is_position(field)) continue;
       begin_attribute(field.name, type_of(field), field.at_nodes);
@@ -173,6 +179,7 @@ class Writer {
 
   std::string file_;
   std::string text_;
+  std::size_t collection_ = 0;
 };
 
 void write_file(const std::filesystem::path& path, const std::string& text) {
