@@ -47,6 +47,7 @@ void add_run(CLI::App& program, CommandLine& line) {
       ->excludes(output)
       ->excludes(force);
   verb->add_flag("--no-progress", line.no_progress, "no progress bar");
+  verb->add_flag("!--no-paraview", line.run.paraview, "no side file (.xdmf) by which ParaView opens the result");
 }
 
 void add_others(CLI::App& program, CommandLine& line) {

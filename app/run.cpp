@@ -8,6 +8,7 @@
 #include "app/interrupt.hpp"
 #include "app/progress_bar.hpp"
 #include "app/verbs.hpp"
+#include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "pipeline/run.hpp"
@@ -45,6 +46,17 @@ void report(const pipeline::Outcome& outcome, const std::string& path) {
     base::log_warning(base::format("interrupted{}; go on with --resume {}", at, path));
   } else {
     base::log_error(base::format("{}{}: {} (what was computed is in {})", status, at, outcome.sentence, path));
+  }
+}
+
+/// The result is what counts: without room for the side files it is complete all the same.
+void write_side_files(const std::string& path, const results::Drawing& drawing) {
+  try {
+    for (const std::string& side : results::write_xdmf(path, drawing)) {
+      base::log_verbose(base::format("for ParaView: {}", side));
+    }
+  } catch (const base::EnvironmentError& error) {
+    base::log_warning(base::format("no side file for ParaView: {}", error.what()));
   }
 }
 
@@ -97,8 +109,8 @@ int run(const RunArguments& arguments) {
   };
   const pipeline::Outcome outcome = pipeline::run(*scene, *built, recorder, context, earlier);
   bar.clear();
-  for (const std::string& side : results::write_xdmf(output.path, drawing_of(*scene))) {
-    base::log_verbose(base::format("for ParaView: {}", side));
+  if (arguments.paraview && outcome.status != variational::Status::write_error) {
+    write_side_files(output.path, drawing_of(*scene));
   }
   report(outcome, output.path);
   report_phases(context.phases);

@@ -14,6 +14,7 @@ struct RunArguments {
   std::string resume;  ///< empty: a new run
   bool force = false;
   bool progress = true;
+  bool paraview = true;  ///< write the side file
   int threads = 1;
   std::string command_line;
 };
