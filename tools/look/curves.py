@@ -44,7 +44,7 @@ class Panels:
         x_label, y_label = axis_label(series.x_name, series.x_unit), axis_label(quantity, unit)
         panel = self.found.setdefault((title, x_label, y_label), Panel(title, x_label, y_label, [], **options))
         for name, x, y in curves:
-            panel.curves.append(Curve(name, series.result.label, x, y, series.stable[: len(x)] if series.is_statics else None))
+            panel.curves.append(Curve(name, series.label, x, y, series.stable[: len(x)] if series.is_statics else None))
 
     def all(self):
         panels = [panel for panel in self.found.values() if panel.curves]

@@ -86,7 +86,7 @@ def ledger(result):
         if rows:
             heads = (f"energy ({unit})", "first", "last", "least", "largest", "meaning")
             cells = [(name, *(tables.number(value) for value in values), doc) for name, *values, doc in rows]
-            title = f"<h3>{'Equilibria' if series.is_statics else 'Motion'}</h3>" if len(result.series) > 1 else ""
+            title = f"<h3>{series.name.capitalize()}</h3>" if len(result.series) > 1 else ""
             parts.append(title + table(heads, cells, words=(5,), last="total" if series.is_statics else "balance"))
     return "".join(parts)
 
@@ -98,7 +98,7 @@ def solver(result):
     for series in result.series:
         cells = [(name, tables.number(mean), tables.number(largest), "" if total is None else str(total), doc) for name, mean, largest, total, doc in tables.solver_rows(series)]
         if cells:
-            title = f"<h3>{'Equilibria' if series.is_statics else 'Motion'}, {len(series.x)} rows</h3>"
+            title = f"<h3>{series.name.capitalize()}, {len(series.x)} rows</h3>"
             parts.append(title + table(("", "mean", "largest", "sum", "meaning"), cells, words=(4,)))
     times = tables.wall_times(result)
     if times:
@@ -163,7 +163,7 @@ def main():
 
     import result
 
-    opened = result.Result(arguments.file)
+    (opened,) = result.open_all([arguments.file])
     if not opened.series:
         raise result.WrongInput(f"'{arguments.file}' holds no rows yet")
     pathlib.Path(arguments.output).write_text(page(opened, drawing), encoding="utf-8")

@@ -27,9 +27,10 @@ def natural(name):
 
 
 class Series:
-    """The rows of the dynamics or of the statics of a file: values over an axis.
+    """The rows of the dynamics, the statics or the replay of a file: values over an axis.
 
-    prefix  '' or 'statics/'
+    prefix  '', 'statics/' or 'replay/'
+    label   what legends call it
     x       values of the axis (rows), `x_name` and `x_unit` what they are
     """
 
@@ -38,7 +39,9 @@ class Series:
         self.prefix = prefix
         self.x = result.values(axis)
         self.x_unit = result.unit(axis)
-        self.is_statics = prefix != ""
+        self.is_statics = prefix == "statics/"
+        self.label = f"{result.label}, replay" if prefix == "replay/" else result.label
+        self.name = {"": "motion", "statics/": "equilibria", "replay/": "replay"}[prefix]
         self.x_name = "time"
         if self.is_statics:
             swept = "swept control" in result.doc(axis)
@@ -83,10 +86,12 @@ class Result:
         except yaml.YAMLError:
             self.scene = {}
         self.series = []
-        if "time" in self.file and self.file["time"].shape[0]:
-            self.series.append(Series(self, "", "time"))
-        if "statics/load" in self.file and self.file["statics/load"].shape[0]:
-            self.series.append(Series(self, "statics/", "statics/load"))
+
+    def read_series(self):
+        """Finds the series that have rows; after the labels are settled."""
+        for prefix, axis in (("", "time"), ("replay/", "time"), ("statics/", "load")):
+            if prefix + axis in self.file and self.file[prefix + axis].shape[0]:
+                self.series.append(Series(self, prefix, prefix + axis))
 
     def text(self, name):
         value = self.file.attrs.get(name, "")
@@ -133,4 +138,5 @@ def open_all(paths):
     for result in results:
         if labels.count(result.label) > 1:
             result.label = f"{result.path.parent.name or '.'}/{result.path.stem}"
+        result.read_series()
     return results

@@ -106,7 +106,7 @@ def warnings_of(result):
     found = []
     tolerance = float((result.scene.get("solver") or {}).get("tolerance", 1e-10))
     for series in result.series:
-        where = "equilibria" if series.is_statics else "motion"
+        where = series.name
         if series.is_statics and not series.stable.all():
             x = series.x[: len(series.stable)][~series.stable]
             found.append(f"{int((~series.stable).sum())} of {len(series.stable)} equilibria are unstable, from {with_unit(x[0], series.x_unit)} on the path.")

@@ -71,7 +71,7 @@ def lines_of(series, drawing, rows):
         fields = {}
         for name in series.result.names(folder):
             data = series.result.file[f"{folder}/{name}"]
-            if getattr(data, "ndim", 0) == 1 and len(data) >= len(series.x):
+            if getattr(data, "ndim", 0) == 1 and len(data) >= len(series.x) and "axis" not in data.attrs:
                 fields[name] = {"unit": data.attrs.get("unit", ""), "values": floats(series.result.rows(f"{folder}/{name}", rows))}
         lines.append(line | {"fields": fields})
     return lines
@@ -155,7 +155,7 @@ def view_of(series, drawing):
     if drawing.get("bodies") and not bodies:
         lines = []
     view = {
-        "name": "equilibria" if series.is_statics else "motion",
+        "name": series.name,
         "axis": series.x_name,
         "unit": "" if series.x_unit == "1" else series.x_unit,
         "frames": series.x[rows].tolist(),
@@ -180,6 +180,6 @@ def view_of(series, drawing):
 
 
 def views_of(result, drawing):
-    """The motion first, then the equilibria, as far as there are two frames of them to show."""
+    """The motion first, then the others, as far as there is something to show."""
     views = [view_of(series, drawing) for series in result.series]
     return [view for view in views if view]
