@@ -51,7 +51,7 @@ class Panels:
         for panel in panels:
             # A single name needs no legend.
             names = {curve.name for curve in panel.curves}
-            if len(names) == 1 and min(names) not in ("", "balance", "total"):
+            if len(names) == 1 and not panel.title.startswith("Solver") and min(names) not in ("", "balance", "total"):
                 what, comma, rest = panel.title.partition(",")
                 panel.title = f"{what} of {min(names)}{comma}{rest}"
         return panels
@@ -134,7 +134,7 @@ def add_solver(panels, series):
             panels.add(series, "Solver: work", "number a step", "1", columns(series, f"solver/{name}", name))
     for name in ("residual", "constraint_violation"):
         if f"solver/{name}" in series:
-            curves = [(label, x, numpy.where(y > 0, y, numpy.nan)) for label, x, y in columns(series, f"solver/{name}", name.replace("_", " "))]
+            curves = [(label, x, numpy.where(y > 0, y, numpy.nan)) for label, x, y in columns(series, f"solver/{name}", name.replace("_", " ")) if numpy.any(y > 0)]
             panels.add(series, "Solver: accuracy", "relative size", "1", curves, log_y=True)
 
 

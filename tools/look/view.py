@@ -62,11 +62,11 @@ def bodies_of(series, drawing, rows):
 
 
 def lines_of(series, drawing, rows):
-    """Muscles and springs with their recorded scalars."""
-    lines = []
+    """Muscles and springs with their recorded scalars, but those that are seen as meshes."""
+    lines, meshes = [], mesh_folders(series)
     for line in drawing.get("lines", []):
         folder = series.prefix + line["folder"]
-        if f"{folder}/length" not in series.result:
+        if f"{folder}/length" not in series.result or any(f"{mesh}/".startswith(f"{line['folder']}/") for mesh in meshes):
             continue
         fields = {}
         for name in series.result.names(folder):
@@ -145,7 +145,13 @@ def surface_of(series, folder, rows, budget):
 
 
 def mesh_folders(series):
-    return [f"{family}/{name}" for family in ("solids", "muscles") for name in series.names(family) if f"{family}/{name}/cells" in series]
+    """Groups of solids, and of muscles of finite elements, that hold a mesh."""
+    folders = []
+    for family in ("solids", "muscles"):
+        group = series.result.file.get(series.prefix + family)
+        if group is not None:
+            group.visit(lambda name, family=family: folders.append(f"{family}/{name}"[: -len("/cells")]) if name.endswith("/cells") else None)
+    return folders
 
 
 def view_of(series, drawing):
