@@ -43,8 +43,8 @@ void check_results(const std::vector<std::string>& files) {
 }  // namespace
 
 const std::vector<std::string>& plot_kinds() {
-  static const std::vector<std::string> kinds{"energy", "joints",   "muscles", "controls",   "points",
-                                              "probes", "momentum", "solver",  "convergence"};
+  static const std::vector<std::string> kinds{"energy", "joints",   "muscles", "controls", "points",
+                                              "probes", "momentum", "solver",  "optimum",  "convergence"};
   return kinds;
 }
 

@@ -30,6 +30,7 @@ class Panel:
     log_y: bool = False
     zero_line: bool = False
     markers: bool = False
+    held: bool = False  # each value holds over the interval that ends at its time
 
 
 class Panels:
@@ -107,7 +108,7 @@ def add_muscles(panels, series):
 def add_controls(panels, series):
     for name in series.names("controls"):
         path = f"controls/{name}"
-        panels.add(series, "Controls", "control", series.unit(path), columns(series, path, name))
+        panels.add(series, "Controls", "control", series.unit(path), columns(series, path, name), held=not series.is_statics)
 
 
 def add_points(panels, series):
@@ -138,6 +139,22 @@ def add_solver(panels, series):
             panels.add(series, "Solver: accuracy", "relative size", "1", curves, log_y=True)
 
 
+def add_optimum(panels, series):
+    """How the iterates of each stage came to the optimum."""
+    if series.prefix:
+        return
+    for stage in series.names("optimum"):
+        for quantity in ("objective", "infeasibility"):
+            path = f"optimum/{stage}/iterates/{quantity}"
+            if path in series:
+                values = series.result.values(path)
+                log = quantity == "infeasibility"
+                title = f"Optimum: {quantity}"
+                panel = panels.found.setdefault((title,), Panel(title, "iteration", quantity, [], log_y=log))
+                shown = numpy.where(values > 0, values, numpy.nan) if log else values
+                panel.curves.append(Curve(f"stage {stage}", series.label, numpy.arange(len(values)), shown))
+
+
 KINDS = {
     "joints": add_joints,
     "muscles": add_muscles,
@@ -147,6 +164,7 @@ KINDS = {
     "energy": add_energy,
     "momentum": add_momentum,
     "solver": add_solver,
+    "optimum": add_optimum,
 }
 # What is drawn where nobody says what, as far as the files hold it.
 USUAL = ("joints", "points", "probes", "muscles", "controls", "energy")

@@ -88,10 +88,10 @@ def draw_slopes(axes, panel):
     return entries
 
 
-def draw_curve(axes, curve, colour, dashes, marker):
+def draw_curve(axes, curve, colour, dashes, marker, held=False):
     """Unstable equilibria are dotted; true if there are any."""
     if curve.stable is None or curve.stable.all():
-        axes.plot(curve.x, curve.y, color=colour, linestyle=dashes, marker=marker)
+        axes.plot(curve.x, curve.y, color=colour, linestyle=dashes, marker=None if held else marker, drawstyle="steps-pre" if held else "default")
         return False
     # The last stable point begins the unstable piece.
     unstable = ~curve.stable | numpy.append(~curve.stable[1:], False) | numpy.insert(~curve.stable[:-1], 0, False)
@@ -115,7 +115,7 @@ def draw(axes, panel):
     unstable = False
     for curve, (colour, dashes) in zip(panel.curves, styles):
         marker = "o" if panel.markers or len(curve.x) < 12 else None
-        unstable |= draw_curve(axes, curve, colour, dashes, marker)
+        unstable |= draw_curve(axes, curve, colour, dashes, marker, panel.held)
     if unstable:
         entries.append(line("#555555", (0, (1, 1.2)), "unstable"))
     if panel.zero_line:
@@ -142,7 +142,7 @@ def add_legend(axes, entries):
     if len(entries) <= 4 and longest <= 22:
         axes.legend(handles=entries, loc="best", borderaxespad=0.2)
     else:
-        columns = 1 if longest > 34 else 2 if longest > 20 else 3 if longest > 12 else 4
+        columns = 1 if longest > 26 else 2 if longest > 18 else 3 if longest > 12 else 4
         axes.legend(handles=entries, loc="upper left", bbox_to_anchor=(-0.08, -0.3), ncol=columns, borderaxespad=0, columnspacing=1.2)
 
 

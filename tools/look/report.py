@@ -14,7 +14,7 @@ import guarded
 HERE = pathlib.Path(__file__).resolve().parent
 THREE = ("three.min.js", "examples/js/controls/OrbitControls.js")
 THREE_FOLDERS = ("/usr/share/javascript/three", "/usr/share/nodejs/three")
-REPORT_KINDS = ("joints", "points", "probes", "muscles", "controls", "energy", "momentum", "solver")
+REPORT_KINDS = ("joints", "points", "probes", "muscles", "controls", "energy", "momentum", "optimum", "solver")
 MAX_SCENE = 60_000  # characters of the scene that are shown
 
 

@@ -8,6 +8,8 @@ import stat
 import subprocess
 import unittest
 
+import h5py
+
 from program import PROGRAM, ROOT, SCENES, ProgramTest, options
 
 JOINT = SCENES / "revolute_joint_lumped.yaml"
@@ -69,6 +71,20 @@ class Plot(ProgramTest):
             self.assertGreater(slope, 1.95)
             self.assertLess(slope, 2.1)
 
+    def test_draws_replays_beside_optima(self):
+        # The layout of an optimum, by hand: its trajectory in the ordinary groups, iterates by stage, a replay.
+        self.joint("a.h5")
+        with h5py.File(self.folder / "a.h5", "r+") as file:
+            replay = file.create_group("replay")
+            for name in ("time", "joints", "controls"):
+                file.copy(name, replay)
+            for name, values in (("objective", [3.0, 2.0, 1.5]), ("infeasibility", [1.0, 1e-3, 0.0])):
+                file[f"optimum/1/iterates/{name}"] = values
+        self.program("plot", "a.h5", "--what", "joints,optimum", "-o", "a.svg")
+        found = texts(self.folder / "a.svg")
+        self.assertIn("a, replay", found)
+        self.assertLessEqual({"Optimum: objective of stage 1", "Optimum: infeasibility of stage 1", "iteration"}, set(found))
+
     def test_writes_png_and_pdf(self):
         self.joint("a.h5")
         for ending, begin in ((".png", b"\x89PNG"), (".pdf", b"%PDF")):
@@ -96,7 +112,7 @@ class Refuses(ProgramTest):
         self.assertEqual(
             self.message("plot", "a.h5", "--what", "enrgy", code=2),
             "error: --what: no plot 'enrgy' (did you mean 'energy'?); known: energy, joints, muscles, controls, points, probes, momentum, solver, "
-            "convergence",
+            "optimum, convergence",
         )
         self.assertEqual(
             self.message("plot", "a.h5", "--what", "energy,muscles", code=2),
