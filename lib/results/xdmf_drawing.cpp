@@ -85,10 +85,10 @@ class Grids {
     const std::string first = prefix_ + lines.front()->folder;
     for (const std::string& path : file_.data_sets(first)) {
       const std::string name = path.substr(path.rfind('/') + 1);
-      const bool shared = std::all_of(lines.begin(), lines.end(), [&](const DrawnLine* line) {
-        const std::string own = prefix_ + line->folder + "/" + name;
-        return file_.contains(own) && file_.data_set(own).grows() && file_.data_set(own).shape().size() == 1 &&
-               !file_.attribute(own, "axis");
+      const hdf5::DataSet set = file_.data_set(path);
+      if (!set.grows() || set.shape().size() != 1 || file_.attribute(path, "axis")) continue;
+      const bool shared = std::all_of(lines.begin() + 1, lines.end(), [&](const DrawnLine* line) {
+        return file_.contains(prefix_ + line->folder + "/" + name);
       });
       if (!shared) continue;
       LineField field{.name = name};
