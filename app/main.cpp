@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "app/exit_code.hpp"
+#include "app/look.hpp"
 #include "app/verbs.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
@@ -19,8 +20,10 @@ struct CommandLine {
   std::string first;
   std::string second;
   results::CompareOptions compare;
+  app::LookArguments look;
   bool quiet = false;
   bool no_progress = false;
+  bool derivatives = false;
   int verbose = 0;
 };
 
@@ -30,21 +33,39 @@ void add_scene_options(CLI::App& verb, CommandLine& line) {
       ->allow_extra_args(false);
 }
 
-void add_run(CLI::App& program, CommandLine& line) {
-  CLI::App* verb = program.add_subcommand("run", "run the statics and dynamics of a scene");
-  verb->add_option("scene", line.run.scene, "scene file")->required()->type_name("SCENE.yaml");
-  CLI::Option* output = verb->add_option("-o,--output", line.run.output, "result file; default <scene stem>.h5 here");
-  output->type_name("FILE");
-  add_scene_options(*verb, line);
-  verb->add_option("--threads", line.run.threads, "number of threads; results do not depend on it")
+/// Scene, output and the other options of the verbs that write a result file.
+void add_run_options(CLI::App& verb, CommandLine& line) {
+  verb.add_option("scene", line.run.scene, "scene file")->required()->type_name("SCENE.yaml");
+  verb.add_option("-o,--output", line.run.output, "result file; default <scene stem>.h5 here")->type_name("FILE");
+  add_scene_options(verb, line);
+  verb.add_option("--threads", line.run.threads, "number of threads; results do not depend on it")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
-  CLI::Option* force = verb->add_flag("--force", line.run.force, "overwrite an existing result file");
+  verb.add_flag("--force", line.run.force, "overwrite an existing result file");
+  verb.add_flag("--no-progress", line.no_progress, "no progress bar");
+  verb.add_flag("!--no-paraview", line.run.paraview, "no side file (.xdmf) by which ParaView opens the result");
+}
+
+void add_run(CLI::App& program, CommandLine& line) {
+  CLI::App* verb = program.add_subcommand("run", "run the statics and dynamics of a scene");
+  add_run_options(*verb, line);
   verb->add_option("--resume", line.run.resume, "go on at the state recorded in this result file, in the same file")
       ->type_name("FILE")
-      ->excludes(output)
-      ->excludes(force);
-  verb->add_flag("--no-progress", line.no_progress, "no progress bar");
+      ->excludes(verb->get_option("--output"))
+      ->excludes(verb->get_option("--force"));
+}
+
+void add_optimise(CLI::App& program, CommandLine& line) {
+  CLI::App* verb = program.add_subcommand("optimise", "find the controls that a scene asks for, and replay them");
+  verb->alias("optimize");
+  add_run_options(*verb, line);
+}
+
+void add_check(CLI::App& program, CommandLine& line) {
+  CLI::App* verb = program.add_subcommand("check", "check the program itself on a scene");
+  verb->add_option("scene", line.run.scene, "scene file")->required()->type_name("SCENE.yaml");
+  verb->add_flag("--derivatives", line.derivatives, "Taylor and difference checks of all derivatives")->required();
+  add_scene_options(*verb, line);
 }
 
 void add_others(CLI::App& program, CommandLine& line) {
@@ -70,14 +91,52 @@ void add_others(CLI::App& program, CommandLine& line) {
   program.add_subcommand("schema", "the JSON Schema of the scene format");
 }
 
+/// The verbs for people: pictures, pages, starter scenes, explanations.
+void add_look(CLI::App& program, app::LookArguments& look) {
+  CLI::App* plot = program.add_subcommand("plot", "curves of one or several result files as a figure");
+  plot->add_option("files", look.files, "result files, also running ones")->required()->type_name("OUT.h5");
+  plot->add_option("--what", look.what,
+                   "what to draw: " + base::joined(app::plot_kinds()) + "; default what the files hold")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("LIST");
+  plot->add_option("-o,--output", look.output, "figure; default <file stem>.svg here")->type_name("FIG.svg|png|pdf");
+
+  CLI::App* report = program.add_subcommand("report", "one page about a result, with plots and an animated view");
+  report->add_option("file", look.files, "result file")->required()->expected(1)->type_name("OUT.h5");
+  report->add_option("-o,--output", look.output, "page; default <file stem>.html here")->type_name("REPORT.html");
+
+  CLI::App* paraview = program.add_subcommand("paraview", "write the side file by which ParaView opens a result");
+  paraview->add_option("file", look.files, "result file")->required()->expected(1)->type_name("OUT.h5");
+
+  CLI::App* starter = program.add_subcommand("new", "a commented scene to begin with");
+  starter->add_option("kind", look.word, app::starter_kinds())->type_name("KIND");
+  starter->add_option("-o,--output", look.output, "scene file; default standard output")->type_name("SCENE.yaml");
+  starter->add_flag("--force", look.force, "overwrite an existing file");
+
+  CLI::App* explain = program.add_subcommand("explain", "meaning, unit, default and range of a key of scenes");
+  explain->add_option("key", look.word, "e.g. muscles.*.section; without it the sections of a scene")
+      ->type_name("KEY.PATH");
+}
+
 int dispatch(const CLI::App& program, CommandLine& line) {
   if (program.got_subcommand("run")) {
     line.run.progress = !line.no_progress;
     return app::run(line.run);
   }
+  if (program.got_subcommand("optimise")) {
+    line.run.progress = !line.no_progress;
+    return app::optimise(line.run);
+  }
+  if (program.got_subcommand("check")) return app::check_derivatives(line.run.scene, line.run.overrides);
   if (program.got_subcommand("validate")) return app::validate(line.scenes, line.run.overrides);
   if (program.got_subcommand("compare")) return app::compare(line.first, line.second, line.compare);
   if (program.got_subcommand("info")) return app::info(line.first);
+  if (program.got_subcommand("plot")) return app::plot(line.look);
+  if (program.got_subcommand("report")) return app::report(line.look);
+  if (program.got_subcommand("paraview")) return app::paraview(line.look);
+  if (program.got_subcommand("new")) return app::starter(line.look);
+  if (program.got_subcommand("explain")) return app::explain(line.look);
   return app::schema();
 }
 
@@ -150,7 +209,10 @@ int main(int argc, char** argv) {
   program.add_flag("--quiet", line.quiet, "warnings and errors only");
   program.add_flag("-v", line.verbose, "say more; -vv everything");
   add_run(program, line);
+  add_optimise(program, line);
+  add_check(program, line);
   add_others(program, line);
+  add_look(program, line.look);
   try {
     program.parse(argc, argv);
     if (program.get_subcommands().empty()) throw CLI::RequiredError("a verb");

@@ -1,13 +1,15 @@
 #include <cmath>
-#include <filesystem>
 #include <optional>
 
 #include "app/earlier_record.hpp"
 #include "app/exit_code.hpp"
 #include "app/interrupt.hpp"
 #include "app/progress_bar.hpp"
+#include "app/run_output.hpp"
 #include "app/verbs.hpp"
+#include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "pipeline/run.hpp"
 #include "pipeline/summary.hpp"
@@ -17,23 +19,6 @@
 
 namespace muldi::app {
 namespace {
-
-void print(const std::vector<base::Diagnostic>& diagnostics) {
-  for (const base::Diagnostic& diagnostic : diagnostics) base::log_plain(base::to_string(diagnostic));
-}
-
-results::Output output_of(const RunArguments& arguments) {
-  results::Output output;
-  if (!arguments.resume.empty()) {
-    output.path = arguments.resume;
-    output.mode = results::Output::Mode::resume;
-    return output;
-  }
-  output.path =
-      arguments.output.empty() ? std::filesystem::path(arguments.scene).stem().string() + ".h5" : arguments.output;
-  output.mode = arguments.force ? results::Output::Mode::overwrite : results::Output::Mode::create;
-  return output;
-}
 
 void report(const pipeline::Outcome& outcome, const std::string& path) {
   const std::string status = variational::name_of(outcome.status);
@@ -47,18 +32,13 @@ void report(const pipeline::Outcome& outcome, const std::string& path) {
   }
 }
 
-void report_phases(const base::Phases& phases) {
-  std::vector<std::string> parts;
-  for (const base::Phase& phase : phases.all()) parts.push_back(base::format("{} {:.3g} s", phase.name, phase.seconds));
-  base::log_verbose("wall time: " + base::joined(parts, ", "));
-}
-
 }  // namespace
 
 int run(const RunArguments& arguments) {
   pipeline::RunContext context;
   context.command_line = arguments.command_line;
   context.threads = arguments.threads;
+  base::set_threads(arguments.threads);
   std::optional<scene::Scene> scene;
   std::optional<build::BuiltModel> built;
   {
@@ -66,7 +46,8 @@ int run(const RunArguments& arguments) {
     scene = scene::read_scene(arguments.scene, arguments.overrides);
     print(scene->warnings);
     if (!scene->statics && !scene->dynamics) {
-      throw base::InputError({scene::error_at(scene->origin, "nothing to run: give `statics:` or `dynamics:`")});
+      const std::string hint = scene->optimal_control ? "; for `optimal_control:` there is the verb optimise" : "";
+      throw base::InputError({scene::error_at(scene->origin, "nothing to run: give `statics:` or `dynamics:`" + hint)});
     }
   }
   {
@@ -96,10 +77,8 @@ int run(const RunArguments& arguments) {
   };
   const pipeline::Outcome outcome = pipeline::run(*scene, *built, recorder, context, earlier);
   bar.clear();
-  if (!built->model->histories.empty()) {
-    for (const std::string& side : results::write_xdmf(output.path)) {
-      base::log_verbose(base::format("fields for ParaView: {}", side));
-    }
+  if (arguments.paraview && outcome.status != variational::Status::write_error) {
+    write_side_files(output.path, *scene);
   }
   report(outcome, output.path);
   report_phases(context.phases);

@@ -7,6 +7,7 @@
 #include "base/log.hpp"
 #include "pipeline/checkpoint.hpp"
 #include "pipeline/initial_state.hpp"
+#include "pipeline/optimise.hpp"
 #include "pipeline/summary.hpp"
 #include "scene/read_scene.hpp"
 
@@ -21,8 +22,10 @@ int validate(const std::vector<std::string>& scenes, const std::vector<std::stri
       for (const auto* list : {&scene.warnings, &built.notes}) {
         for (const base::Diagnostic& diagnostic : *list) base::log_plain(base::to_string(diagnostic));
       }
-      if (const auto earlier = earlier_state(scene)) pipeline::state_of(*earlier, scene, *built.model);
+      const std::optional<results::Checkpoint> earlier = earlier_state(scene);
+      if (earlier) pipeline::state_of(*earlier, scene, *built.model);
       pipeline::initial_rates(scene, built, pipeline::initial_coordinates(scene, built));
+      if (scene.optimal_control) pipeline::validate_optimal_control(scene, built, earlier);
       std::fputs((path + ": " + pipeline::summary(scene, built)).c_str(), stdout);
     } catch (const base::InputError& error) {
       base::log_plain(error.what());

@@ -14,11 +14,14 @@ struct RunArguments {
   std::string resume;  ///< empty: a new run
   bool force = false;
   bool progress = true;
+  bool paraview = true;  ///< write the side file
   int threads = 1;
   std::string command_line;
 };
 
 int run(const RunArguments& arguments);
+int optimise(const RunArguments& arguments);
+int check_derivatives(const std::string& scene, const std::vector<std::string>& overrides);
 int validate(const std::vector<std::string>& scenes, const std::vector<std::string>& overrides);
 int compare(const std::string& first, const std::string& second, const results::CompareOptions& options);
 int info(const std::string& file);

@@ -132,6 +132,16 @@ struct TypeList {
   using Variant = std::variant<Components...>;
 };
 
+template <class First, class Second>
+struct JoinedLists;
+template <class... First, class... Second>
+struct JoinedLists<TypeList<First...>, TypeList<Second...>> {
+  using List = TypeList<First..., Second...>;
+};
+/// The components of two families, in order.
+template <class First, class Second>
+using Joined = typename JoinedLists<First, Second>::List;
+
 /// A value of one component of the family.
 template <class List>
 using VariantOf = typename List::Variant;

@@ -25,4 +25,11 @@ ControlValue ControlTable::value_of(const scene::Drive& drive, base::Dimension u
   return {.control = static_cast<int>(controls_.size()) - 1};
 }
 
+std::string_view word_of(scene::ControlQuantity quantity) {
+  for (const auto& word : scene::words(quantity)) {
+    if (word.value == quantity) return word.word;
+  }
+  return {};
+}
+
 }  // namespace muldi::build

@@ -1,6 +1,7 @@
 #pragma once
 /// Controls of the model: those of the scene by name, then one for every function of time that stands where it acts.
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "model/model.hpp"
@@ -13,6 +14,9 @@ struct ControlValue {
   int control = -1;
   double constant = 0.0;
 };
+
+/// The word of a quantity in scenes.
+std::string_view word_of(scene::ControlQuantity quantity);
 
 class ControlTable {
  public:

@@ -59,13 +59,6 @@ muscles::MuscleGiven given_of(const scene::Scene& scene, const scene::Muscle& mu
           .isolated = is_free(muscle)};
 }
 
-std::string_view word_of(scene::ControlQuantity quantity) {
-  for (const auto& word : scene::words(quantity)) {
-    if (word.value == quantity) return word.word;
-  }
-  return {};
-}
-
 /// Where the element of a model takes its control from.
 template <class Model>
 auto inputs_of(const TermContext& context, const scene::Muscle& muscle, const muscles::MuscleGiven& given) {
@@ -112,6 +105,10 @@ void add_muscles_of(TermContext& context, std::vector<base::Diagnostic>& errors)
     const muscles::MuscleGiven given = given_of(context.scene, muscle, length);
     const Element element = std::get<std::optional<Model>>(muscle.options).value_or(Model{}).element(given);
     const auto inputs = inputs_of<Model>(context, muscle, given);
+    for (const muscles::ControlInput& input : inputs) {
+      if (input.control < 0) continue;
+      context.built.driven_muscles.push_back({entry.name, input.control, input.factor, length});
+    }
     if (is_free(muscle)) {
       free.push_back({entry.name, element, n_bodies + free_index, 12 * n_bodies + free_index, inputs});
       add_observables(context, muscles::observables_of(free.back()));

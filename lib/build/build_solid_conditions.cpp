@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "build/build_solids.hpp"
+#include "build/build_ties.hpp"
 #include "build/place_bodies.hpp"
 #include "fem/mesh/selection.hpp"
 #include "fem/solid/face_shares.hpp"
@@ -19,7 +20,9 @@ fem::Value value_of(const SolidContext& context, const scene::Drive& drive, cons
   return {.control = value.control, .constant = value.constant};
 }
 
-bool same(const fem::Value& a, const fem::Value& b) { return a.control == b.control && a.constant == b.constant; }
+bool same(const fem::Value& a, const fem::Value& b) {
+  return a.control == b.control && a.constant == b.constant && a.factor == b.factor;
+}
 
 /// Values on nodes, each given once.
 class Prescriptions {
@@ -31,6 +34,7 @@ class Prescriptions {
     return is_new || same(at->second, value);
   }
   bool is_new() const { return is_new_; }
+  bool has(int node, int unknown) const { return values_.count({node, unknown}) > 0; }
 
  private:
   std::map<std::pair<int, int>, fem::Value> values_;
@@ -41,10 +45,12 @@ class ConditionBuilder {
  public:
   ConditionBuilder(const SolidContext& context, const scene::Entry<scene::Solid>& entry, const fem::Mesh& mesh,
                    fem::SolidDescription& data)
-      : context_(context), mesh_(mesh), selection_(mesh), owner_("solids." + entry.name), data_(data) {
-    for (const auto& said : data.displacements) prescribed_.add(said.node, said.component, said.value);
-    for (const auto& said : data.potentials) prescribed_.add(said.node, 3, said.value);
-  }
+      : context_(context),
+        mesh_(mesh),
+        selection_(mesh),
+        owner_("solids." + entry.name),
+        data_(data),
+        ties_(context.scene, context.poses, data) {}
 
   void add(const scene::Condition& condition) {
     if (condition.displacement) add_displacement(condition);
@@ -62,11 +68,29 @@ class ConditionBuilder {
     if (condition.surface_charge) add_surface_charge(condition);
   }
 
-  void hold(const scene::Where& where, const scene::Origin& origin) {
-    for (const int node : nodes(where)) {
-      for (int i = 0; i < 3; ++i) prescribe(node, i, {}, origin);
+  /// Fixes the nodes to the body. One node says what is wrong with all.
+  void tie(const scene::SolidAttachment& said) {
+    const int body = body_index(context_.scene, said.body->name);
+    for (const int node : nodes(said.where)) {
+      const int* other = ties_.body_of(node);
+      if (other != nullptr && *other == body) continue;
+      const std::size_t errors = context_.errors.size();
+      if (other == nullptr && body == multibody::ground) {
+        for (int i = 0; i < 3; ++i) prescribe(node, i, {}, said.origin);
+        if (context_.errors.size() > errors) return;
+      }
+      if (other == nullptr && (body == multibody::ground || !is_held(node))) {
+        ties_.add(node, body);
+        continue;
+      }
+      const std::string why =
+          other == nullptr ? "its displacement is prescribed" : "it is fixed to " + ties_.name_of(*other) + " before";
+      context_.errors.push_back(scene::error_at(
+          said.origin, node_name(mesh_, node) + " cannot be fixed to " + ties_.name_of(body) + ": " + why));
+      return;
     }
   }
+  const std::vector<TiedNodes>& ties() const { return ties_.groups(); }
 
   void add(const std::string& name, const scene::Electrode& electrode) {
     if (electrode.alternate) {
@@ -99,6 +123,9 @@ class ConditionBuilder {
   }
 
  private:
+  bool is_held(int node) const {
+    return prescribed_.has(node, 0) || prescribed_.has(node, 1) || prescribed_.has(node, 2);
+  }
   fem::Selected found(fem::Selected selected, const scene::Where& where) {
     if (!selected.error.empty()) context_.errors.push_back(scene::error_at(where.origin, selected.error));
     return selected;
@@ -243,20 +270,22 @@ class ConditionBuilder {
   fem::MeshSelection selection_;
   std::string owner_;
   fem::SolidDescription& data_;
+  TieBuilder ties_;
   Prescriptions prescribed_;
 };
 
 }  // namespace
 
-void add_conditions(const SolidContext& context, const scene::Entry<scene::Solid>& entry, const fem::Mesh& mesh,
-                    fem::SolidDescription& data) {
+std::vector<TiedNodes> add_conditions(const SolidContext& context, const scene::Entry<scene::Solid>& entry,
+                                      const fem::Mesh& mesh, fem::SolidDescription& data) {
   ConditionBuilder builder(context, entry, mesh, data);
   for (const scene::Condition& condition : entry.value.conditions) builder.add(condition);
-  for (const scene::SolidAttachment& tie : entry.value.attach) {
-    if (tie.body && tie.body->name == scene::ground) builder.hold(tie.where, tie.origin);
+  for (const scene::SolidAttachment& said : entry.value.attach) {
+    if (said.body) builder.tie(said);
   }
   for (const auto& electrode : entry.value.electrodes) builder.add(electrode.name, electrode.value);
   builder.check_floating(entry);
+  return builder.ties();
 }
 
 }  // namespace muldi::build

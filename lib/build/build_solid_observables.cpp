@@ -258,6 +258,7 @@ class ProbeBuilder {
 
 model::FieldHistory history_of(const SolidRecords& records, const scene::RecordedFields& said) {
   const fem::SolidDescription& solid = records.solid().data();
+  // Meshes of muscles too: the folder of the muscle holds its series over all records.
   model::FieldHistory history{.folder = "solids/" + solid.name, .every = said.every};
   history.reference.assign(solid.X.data(), solid.X.data() + solid.X.size());
   for (const auto& cell : solid.cells) history.cells.insert(history.cells.end(), cell.begin(), cell.end());
@@ -265,6 +266,16 @@ model::FieldHistory history_of(const SolidRecords& records, const scene::Recorde
     history.fields.push_back(records.field(quantity_of(field), history.folder));
   }
   return history;
+}
+
+/// The records of a solid, or else of a meshed muscle, of this name; null for a muscle without mesh.
+const SolidRecords* records_of(const scene::Scene& scene, const std::string& name, const BuiltModel& built) {
+  const int solid = scene.solids.index(name);
+  if (solid >= 0) return built.solid_records[static_cast<std::size_t>(solid)].get();
+  for (const MeshedMuscle& muscle : built.meshed_muscles) {
+    if (scene.muscles[muscle.index].name == name) return muscle.records;
+  }
+  return nullptr;
 }
 
 }  // namespace
@@ -276,15 +287,18 @@ void add_solid_observables(const scene::Scene& scene, const std::vector<fem::Mes
       built.model->observables.push_back(std::move(one));
     }
   }
-  for (const auto& entry : scene.record.fields) {
-    if (entry.value.fields.empty()) continue;
-    const auto index = static_cast<std::size_t>(scene.solids.index(entry.name));
-    built.model->histories.push_back(history_of(*built.solid_records[index], entry.value));
-  }
   ProbeBuilder probes(scene, meshes, built);
   for (const auto& entry : scene.record.probes) probes.add(entry);
   std::vector<base::Diagnostic> errors = probes.take_errors();
   if (!errors.empty()) throw base::InputError(std::move(errors));
+}
+
+void add_field_histories(const scene::Scene& scene, BuiltModel& built) {
+  for (const auto& entry : scene.record.fields) {
+    if (entry.value.fields.empty()) continue;
+    const fem::SolidRecords* records = records_of(scene, entry.name, built);
+    if (records != nullptr) built.model->histories.push_back(history_of(*records, entry.value));
+  }
 }
 
 }  // namespace muldi::build

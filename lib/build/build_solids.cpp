@@ -5,6 +5,7 @@
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "base/text.hpp"
+#include "build/build_ties.hpp"
 #include "build/place_bodies.hpp"
 #include "fem/mesh/check_mesh.hpp"
 #include "fem/mesh/generate.hpp"
@@ -96,7 +97,8 @@ fem::Formulation formulation(const scene::Scene& scene, const scene::Entry<scene
                              std::vector<Diagnostic>& errors) {
   std::optional<scene::Formulation> common;
   for (const scene::MaterialName& name : entry.value.material.names()) {
-    const scene::Formulation one = scene::formulation_of(entry.value, scene.materials.find(name.name)->value);
+    const scene::Formulation one =
+        scene::formulation_of(entry.value.formulation, scene.materials.find(name.name)->value);
     if (common && *common != one) {
       errors.push_back(scene::error_at(
           entry.origin,
@@ -104,29 +106,11 @@ fem::Formulation formulation(const scene::Scene& scene, const scene::Entry<scene
     }
     common = one;
   }
-  switch (*common) {
-    case scene::Formulation::displacement:
-      return fem::Formulation::displacement;
-    case scene::Formulation::mean_dilatation:
-      return fem::Formulation::mean_dilatation;
-    case scene::Formulation::incompressible:
-      return fem::Formulation::incompressible;
-    case scene::Formulation::incompressible_direct:
-      break;
-  }
-  return fem::Formulation::incompressible_direct;
+  return formulation_of(*common);
 }
 
 /// Bytes that a cell and its share of the nodes take at least, in states, tables and one sparse matrix.
 constexpr double bytes_of_cell = 4000.0;
-
-void require_memory(const scene::Entry<scene::Solid>& entry, double n_cells) {
-  try {
-    base::require_memory(bytes_of_cell * n_cells, base::format("a mesh of {} cells", n_cells), "take fewer cells");
-  } catch (const base::InputError& error) {
-    throw base::InputError({scene::error_at(entry.origin, error.diagnostics().front().message)});
-  }
-}
 
 /// Cells that the mesh will have; 0 where only its file knows.
 double expected_cells(const fem::MeshType& mesh) {
@@ -141,10 +125,23 @@ double expected_cells(const fem::MeshType& mesh) {
       mesh);
 }
 
+fem::Mesh mesh_of(const scene::Scene& scene, const scene::Entry<scene::Solid>& entry) {
+  return std::visit(
+      [&](const auto& said) {
+        if constexpr (requires { said.path; }) {
+          return fem::make_mesh({.path = scene::path_of_file(scene, said.path), .scale = said.scale}, "");
+        } else {
+          return fem::make_mesh(said);
+        }
+      },
+      entry.value.mesh);
+}
+
 void refuse_ties(const scene::Entry<scene::Solid>& entry, std::vector<Diagnostic>& errors) {
   for (const scene::SolidAttachment& tie : entry.value.attach) {
-    if (tie.body && tie.body->name == scene::ground) continue;
-    errors.push_back(scene::error_at(tie.origin, "this version of muldi-sim ties solids to the ground only"));
+    if (!tie.solid) continue;
+    errors.push_back(scene::error_at(
+        tie.origin, "this version of muldi-sim ties solids to bodies and to the ground, not to each other"));
   }
 }
 
@@ -172,30 +169,53 @@ fem::Material material_of(const scene::Material& said, double eps0) {
   return material;
 }
 
-fem::Mesh mesh_of(const scene::Scene& scene, const scene::Entry<scene::Solid>& entry) {
-  fem::Mesh mesh = std::visit(
-      [&](const auto& said) {
-        if constexpr (requires { said.path; }) {
-          return fem::make_mesh({.path = scene::path_of_file(scene, said.path), .scale = said.scale}, "");
-        } else {
-          return fem::make_mesh(said);
-        }
-      },
-      entry.value.mesh);
-  const fem::MeshReport report = fem::check_mesh(mesh);
-  std::vector<Diagnostic> errors;
-  for (const std::string& sentence : report.errors) errors.push_back(scene::error_at(entry.origin, sentence));
-  if (!errors.empty()) throw base::InputError(std::move(errors));
-  return mesh;
+fem::Formulation formulation_of(scene::Formulation said) {
+  switch (said) {
+    case scene::Formulation::displacement:
+      return fem::Formulation::displacement;
+    case scene::Formulation::mean_dilatation:
+      return fem::Formulation::mean_dilatation;
+    case scene::Formulation::incompressible:
+      return fem::Formulation::incompressible;
+    case scene::Formulation::incompressible_direct:
+      break;
+  }
+  return fem::Formulation::incompressible_direct;
 }
 
-void add_solids(const scene::Scene& scene, ControlTable& controls, BuiltModel& built) {
+void require_memory(double n_cells, const scene::Origin& origin) {
+  try {
+    base::require_memory(bytes_of_cell * n_cells, base::format("a mesh of {} cells", n_cells), "take fewer cells");
+  } catch (const base::InputError& error) {
+    throw base::InputError({scene::error_at(origin, error.diagnostics().front().message)});
+  }
+}
+
+void require_sound(const fem::Mesh& mesh, const scene::Origin& origin) {
+  std::vector<Diagnostic> errors;
+  for (const std::string& sentence : fem::check_mesh(mesh).errors) errors.push_back(scene::error_at(origin, sentence));
+  if (!errors.empty()) throw base::InputError(std::move(errors));
+  require_memory(mesh.n_cells(), origin);
+}
+
+const fem::Solid& add_solid(fem::SolidDescription data, BuiltModel& built) {
+  auto solid = std::make_unique<fem::Solid>(std::move(data));
+  built.solids.push_back(solid.get());
+  built.assembled.damping |= solid->is_viscous();
+  built.assembled.electric |= solid->unknowns().has_field();
+  built.model->substructures.push_back(std::move(solid));
+  return *built.solids.back();
+}
+
+void add_solids(TermContext& terms) {
+  const scene::Scene& scene = terms.scene;
   std::vector<Diagnostic> errors;
   std::vector<fem::Mesh> meshes;
+  const SolidContext context{scene, terms.poses, terms.controls, errors};
   for (const auto& entry : scene.solids) {
-    require_memory(entry, expected_cells(entry.value.mesh));
+    require_memory(expected_cells(entry.value.mesh), entry.origin);
     const fem::Mesh& mesh = meshes.emplace_back(mesh_of(scene, entry));
-    require_memory(entry, mesh.n_cells());
+    require_sound(mesh, entry.origin);
     fem::SolidDescription data{.name = entry.name};
     place_nodes(entry.value, mesh, data.X);
     data.cells = mesh.cells;
@@ -206,17 +226,19 @@ void add_solids(const scene::Scene& scene, ControlTable& controls, BuiltModel& b
     const std::size_t before = errors.size();
     add_materials(scene, entry, mesh, errors, data);
     refuse_ties(entry, errors);
-    const SolidContext context{scene, controls, errors};
-    add_conditions(context, entry, mesh, data);
+    std::vector<TiedNodes> tied = add_conditions(context, entry, mesh, data);
     if (errors.size() > before) continue;
-    auto solid = std::make_unique<fem::Solid>(std::move(data));
-    built.solids.push_back(solid.get());
-    built.assembled.damping |= solid->is_viscous();
-    built.assembled.electric |= solid->unknowns().has_field();
-    built.model->substructures.push_back(std::move(solid));
+    const fem::Solid& solid = add_solid(std::move(data), terms.built);
+    if (std::string note = solid.note(); !note.empty()) {
+      terms.built.notes.push_back(scene::warning_at(entry.origin, std::move(note)));
+    }
+    for (TiedNodes& group : tied) {
+      terms.built.ties.push_back(std::make_unique<TiedNodes>(std::move(group)));
+      add_tie_observables(entry.name, solid, *terms.built.ties.back(), *terms.built.model);
+    }
   }
   if (!errors.empty()) throw base::InputError(std::move(errors));
-  add_solid_observables(scene, meshes, built);
+  add_solid_observables(scene, meshes, terms.built);
 }
 
 }  // namespace muldi::build

@@ -76,21 +76,45 @@ void make_manifold(const scene::Scene& scene, const std::vector<multibody::Pose>
   built.model->manifold = std::move(manifold);
 }
 
-/// The word of the wanted linear solver.
-std::string linear_solver(const scene::Scene& scene, const BuiltModel& built) {
-  std::string linear = "auto";
-  if (scene.solver.linear == scene::LinearSolver::automatic) return linear;
-  for (const auto& word : scene::words(scene.solver.linear)) {
-    if (word.value == scene.solver.linear) linear = word.word;
-  }
+/// Refuses a solver with the words of its own error, at the place of the scene.
+template <class Try>
+void try_solver(const scene::Scene& scene, const Try& attempt) {
   try {
-    built.manifold->make_solver(*built.model->pattern, linear);
+    attempt();
   } catch (const base::InputError& error) {
     std::vector<base::Diagnostic> errors = error.diagnostics();
     for (base::Diagnostic& found : errors) found.place = scene.origin.place;
     throw base::InputError(std::move(errors));
   }
-  return linear;
+}
+
+/// The words of the wanted linear solvers, of bodies and of solids.
+void choose_linear_solvers(const scene::Scene& scene, BuiltModel& built) {
+  using scene::LinearSolver;
+  const LinearSolver wanted = scene.solver.linear;
+  std::string word = "auto";
+  for (const auto& each : scene::words(wanted)) {
+    if (each.value == wanted) word = each.word;
+  }
+  const bool of_solids = scene::is_of_solids(wanted);
+  if (of_solids && built.solids.empty()) {
+    base::Diagnostic wrong;
+    wrong.place = scene.origin.place;
+    wrong.path = "solver.linear";
+    wrong.message = base::format(
+        "'{}' is a solver of finite-element solids, and the scene has none: bodies take auto, dense, tree or bordered",
+        word);
+    throw base::InputError({wrong});
+  }
+  if (of_solids || wanted == LinearSolver::direct) {
+    built.solid_linear = word;
+    for (const fem::Solid* solid : built.solids) {
+      try_solver(scene, [&] { solid->check_solver(word); });
+    }
+  } else if (wanted != LinearSolver::automatic) {
+    built.linear = word;
+    try_solver(scene, [&] { built.manifold->make_solver(*built.model->pattern, word); });
+  }
 }
 
 }  // namespace
@@ -126,10 +150,12 @@ BuiltModel build_model(const scene::Scene& scene) {
   add_springs(context);
   add_joint_forces(context);
   add_loads(context);
-  add_solids(scene, controls, built);
+  add_solids(context);
+  add_meshed_muscles(context);
+  add_field_histories(scene, built);
   built.model->controls = controls.take();
   built.model->bind();
-  built.linear = linear_solver(scene, built);
+  choose_linear_solvers(scene, built);
   return built;
 }
 

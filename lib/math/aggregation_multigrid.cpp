@@ -103,7 +103,8 @@ double largest_eigenvalue(const DoubleCsr& a, const Eigen::VectorXd& diagonal) {
   Eigen::VectorXd x(a.n_rows);
   double bound = 0.0;  // no eigenvalue is above it (Gershgorin)
   for (int i = 0; i < a.n_rows; ++i) {
-    x(i) = rough_entry(i);
+    // Constrained rows are solved exactly and may have any scale: they must not hide the others.
+    x(i) = a.start[static_cast<Index>(i) + 1] - a.start[static_cast<Index>(i)] > 1 ? rough_entry(i) : 0.0;
     double sum = 0.0;
     a.for_row(i, [&](int, double value) { sum += std::abs(value); });
     bound = std::max(bound, sum / diagonal(i));
@@ -111,7 +112,9 @@ double largest_eigenvalue(const DoubleCsr& a, const Eigen::VectorXd& diagonal) {
   double eigenvalue = 1.0;
   Eigen::VectorXd y(a.n_rows);
   for (int step = 0; step < 15; ++step) {
-    x /= std::sqrt(x.dot(diagonal.cwiseProduct(x)));
+    const double length = std::sqrt(x.dot(diagonal.cwiseProduct(x)));
+    if (length == 0.0) break;
+    x /= length;
     for_vector_chunks(a.n_rows, [&](std::ptrdiff_t first, std::ptrdiff_t n) {
       for (std::ptrdiff_t i = first; i < first + n; ++i) y(i) = a.row_times(i, x.data());
     });

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "math/block_matrix.hpp"
+#include "model/expansion.hpp"
 
 namespace muldi::model {
 
@@ -144,6 +145,17 @@ class IntervalTerm {
     static_cast<void>(control);
     static_cast<void>(out);
   }
+
+  /// Adds the parts of the kinetic energy that do not depend on the state; `expand` leaves them out.
+  virtual void add_constant_mass(std::vector<MassEntry>& mass) const { static_cast<void>(mass); }
+  /// Hands over the pieces of the term with their derivatives at the point; forces that do not depend on the state or
+  /// on controls are no pieces. False where the term has no such derivatives: it cannot be optimised.
+  virtual bool expand(const IntervalPoint& at, const ExpansionRequest& request, ExpansionSink& sink) const {
+    static_cast<void>(at), static_cast<void>(request), static_cast<void>(sink);
+    return false;
+  }
+  /// Adds the muscles whose fields and stiffness can be limited.
+  virtual void list_limited(std::vector<LimitedMuscle>& muscles) const { static_cast<void>(muscles); }
 
   /// Work of the non-conservative forces over the interval.
   virtual IntervalWork work(const IntervalPoint& at) const = 0;

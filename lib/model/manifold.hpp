@@ -13,8 +13,11 @@
 #include <Eigen/Core>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "math/block_matrix.hpp"
+#include "model/bilinear.hpp"
+#include "model/chart.hpp"
 
 namespace muldi::model {
 
@@ -71,6 +74,9 @@ class Manifold {
   /// The increment w with x_to = retract(x_from, w); predictors and differences use it.
   virtual void difference(const Eigen::VectorXd& x_from, const Eigen::VectorXd& x_to, Eigen::VectorXd& w) const = 0;
 
+  /// Minimal coordinates around the scene pose.
+  virtual std::unique_ptr<Chart> make_chart() const = 0;
+
   virtual std::unique_ptr<Frame> make_frame() const = 0;
   virtual void update(const Eigen::VectorXd& x, const Eigen::VectorXd& q, Frame& frame) const = 0;
   /// Chooses the basis Z at an updated frame, by the configuration alone. Allocates nothing.
@@ -91,6 +97,8 @@ class Manifold {
   /// f += factor G(q)^T lambda; lambda (n_loop_rows).
   virtual void add_constraint_forces(const Eigen::VectorXd& q, double factor, const Eigen::VectorXd& lambda,
                                      Eigen::VectorXd& f) const = 0;
+  /// The loop-closing rows themselves (n_loop_rows).
+  virtual const std::vector<Bilinear>& loop_rows() const = 0;
   /// Largest violation of all constraints, those of the tree included.
   virtual double violation(const Eigen::VectorXd& q) const = 0;
 

@@ -16,6 +16,8 @@ void Model::bind() {
     n_q_ = part->q_slice().end();
     n_y_ = part->y_slice().end();
   }
+  limits_.resize(substructures.size());
+  works_.resize(substructures.size());
   part_counts_.clear();
   for (const auto& term : terms) term->bind(*pattern);
   for (const auto& part : substructures) part->bind(*pattern);
@@ -23,6 +25,7 @@ void Model::bind() {
 }
 
 void Model::evaluate_controls(double t, std::vector<double>& u) const {
+  u.resize(controls.size());
   for (std::size_t k = 0; k < controls.size(); ++k) u[k] = controls[k].function.at(t);
 }
 
@@ -40,7 +43,9 @@ void Model::forces(const IntervalPoint& at, IntervalForces& out) const {
   out.on_rates.setZero();
   out.margin = std::numeric_limits<double>::infinity();
   out.violation = 0.0;
-  each([&](const IntervalTerm& term) { term.add_forces(at, out); });
+  for (const auto& term : terms) term->add_forces(at, out);
+  each_part([&](const Substructure& part, std::size_t i) { limits_[i] = part.add_part_forces(at, out); });
+  for (const PartLimits& limits : limits_) limits.add_to(out);
 }
 
 void Model::tangent(const IntervalPoint& at, const TangentWeights& weights, math::BlockMatrix& K) const {
@@ -55,7 +60,9 @@ void Model::rate_tangent(const IntervalPoint& at, const TangentWeights& weights,
 
 IntervalWork Model::work(const IntervalPoint& at) const {
   IntervalWork total;
-  each([&](const IntervalTerm& term) { total += term.work(at); });
+  for (const auto& term : terms) total += term->work(at);
+  each_part([&](const Substructure& part, std::size_t i) { works_[i] = part.work(at); });
+  for (const IntervalWork& work : works_) total += work;
   return total;
 }
 
@@ -91,13 +98,29 @@ std::vector<std::string> Model::parts() const {
   return all;
 }
 
+bool Model::parts_side_by_side() const {
+  if (substructures.size() < 2 || base::n_threads() == 1) return false;
+  Eigen::Index total = 0;
+  Eigen::Index largest = 0;
+  for (const auto& part : substructures) {
+    total += part->q_slice().size;
+    largest = std::max(largest, part->q_slice().size);
+  }
+  const auto lanes = std::min<std::size_t>(substructures.size(), static_cast<std::size_t>(base::n_threads()));
+  return static_cast<double>(total) > 0.6 * static_cast<double>(lanes) * static_cast<double>(largest);
+}
+
 void Model::energies(const NodePoint& at, std::span<Energy> out) const {
   std::fill(out.begin(), out.end(), Energy{});
   std::size_t first = 0;
-  std::size_t i = 0;
-  each([&](const IntervalTerm& term) {
-    term.energies(at, out.subspan(first, part_counts_[i]));
-    first += part_counts_[i++];
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    terms[i]->energies(at, out.subspan(first, part_counts_[i]));
+    first += part_counts_[i];
+  }
+  each_part([&](const Substructure& part, std::size_t k) {
+    std::size_t begin = first;
+    for (std::size_t before = 0; before < k; ++before) begin += part_counts_[terms.size() + before];
+    part.energies(at, out.subspan(begin, part_counts_[terms.size() + k]));
   });
 }
 

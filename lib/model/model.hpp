@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/describe.hpp"
+#include "base/parallel.hpp"
 #include "base/time_function.hpp"
 #include "model/interval_term.hpp"
 #include "model/manifold.hpp"
@@ -33,6 +34,19 @@ struct Model {
   /// Requests the pattern of all terms and binds them, places the slices of the substructures; call once, after the
   /// last of them.
   void bind();
+
+  /// Calls use(part, i) for all substructures, on several threads where these are better used so than inside of them;
+  /// `use` must touch nothing that parts share.
+  template <class Use>
+  void each_part(const Use& use) const {
+    const auto n = static_cast<int>(substructures.size());
+    if (parts_side_by_side()) {
+      base::parallel_for(n,
+                         [&](int i) { use(*substructures[static_cast<std::size_t>(i)], static_cast<std::size_t>(i)); });
+    } else {
+      for (std::size_t i = 0; i < substructures.size(); ++i) use(*substructures[i], i);
+    }
+  }
 
   Eigen::Index n_q() const { return n_q_; }  ///< configuration: the manifold's and the substructures' slices
   Eigen::Index n_y() const { return n_y_; }  ///< stage unknowns
@@ -71,6 +85,11 @@ struct Model {
     for (const auto& part : substructures) use(*part);
   }
 
+  /// True if the largest part does not leave most threads idle.
+  bool parts_side_by_side() const;
+
+  mutable std::vector<PartLimits> limits_;
+  mutable std::vector<IntervalWork> works_;
   std::vector<std::size_t> part_counts_;
   Eigen::Index n_q_ = 0;
   Eigen::Index n_y_ = 0;

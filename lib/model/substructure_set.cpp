@@ -6,6 +6,7 @@ namespace muldi::model {
 
 SubstructureSet::SubstructureSet(const Model& model, Linearisation kind, const std::string& name) : model_(model) {
   for (const auto& part : model.substructures) solvers_.push_back(part->make_solver(kind, name));
+  done_.resize(solvers_.size());
 }
 
 bool SubstructureSet::moves() const {
@@ -14,24 +15,47 @@ bool SubstructureSet::moves() const {
 }
 
 void SubstructureSet::place(const Placement& at, Eigen::VectorXd& q, Eigen::VectorXd& y) const {
-  for (const auto& part : model_.substructures) part->place(at, q, y);
+  model_.each_part([&](const Substructure& part, std::size_t) { part.place(at, q, y); });
 }
 
 void SubstructureSet::settle_stage(const IntervalPoint& at, Eigen::VectorXd& y) const {
-  for (const auto& part : model_.substructures) part->settle_stage(at, y);
+  model_.each_part([&](const Substructure& part, std::size_t) { part.settle_stage(at, y); });
 }
 
 void SubstructureSet::keep_free(Eigen::VectorXd& rows) const {
   for (const auto& part : model_.substructures) part->keep_free(rows);
 }
 
-double SubstructureSet::size_of(const Eigen::VectorXd& dq, const Eigen::VectorXd& dy) const {
-  double largest = 0.0;
+void SubstructureSet::gather(Eigen::VectorXd& rows) const {
+  for (const auto& part : model_.substructures) part->gather(rows);
+}
+
+IncrementSize SubstructureSet::size_of(const Eigen::VectorXd& dq, const Eigen::VectorXd& dy) const {
+  IncrementSize largest;
   for (const auto& part : model_.substructures) {
-    const double size = part->size_of(dq, dy).largest();
-    if (!(size <= largest)) largest = size;  // keeps a NaN
+    const IncrementSize size = part->size_of(dq, dy);
+    // Comparisons that keep a NaN.
+    if (!(size.positions <= largest.positions)) largest.positions = size.positions;
+    if (!(size.stage <= largest.stage)) largest.stage = size.stage;
   }
   return largest;
+}
+
+double SubstructureSet::product(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
+  double sum = 0.0;
+  Eigen::Index n_nodes = 0;
+  for (const auto& part : model_.substructures) {
+    const Slice& slice = part->q_slice();
+    const double length = part->natural_length();
+    sum += a.segment(slice.first, slice.size).dot(b.segment(slice.first, slice.size)) / (length * length);
+    n_nodes += slice.size / 3;
+  }
+  return n_nodes > 0 ? sum / static_cast<double>(n_nodes) : 0.0;
+}
+
+void SubstructureSet::add_load_rate(const IntervalPoint& at, std::span<const double> du, Eigen::VectorXd& rows,
+                                    Eigen::VectorXd& h) const {
+  for (const auto& part : model_.substructures) part->add_load_rate(at, du, rows, h);
 }
 
 double SubstructureSet::largest_row(const Eigen::VectorXd& rows) const {
@@ -44,19 +68,31 @@ double SubstructureSet::largest_row(const Eigen::VectorXd& rows) const {
 }
 
 bool SubstructureSet::factorise(const IntervalPoint& at) {
-  factorised_ = std::all_of(solvers_.begin(), solvers_.end(), [&](auto& solver) { return solver->factorise(at); });
+  model_.each_part([&](const Substructure&, std::size_t i) { done_[i] = solvers_[i]->factorise(at) ? 1 : 0; });
+  factorised_ = std::all_of(done_.begin(), done_.end(), [](char done) { return done != 0; });
   return factorised_;
 }
 
+void SubstructureSet::turn(const Eigen::VectorXd& q) {
+  model_.each_part([&](const Substructure&, std::size_t i) { solvers_[i]->turn(q); });
+}
+
+void SubstructureSet::linearise(const IntervalPoint& at, double accuracy) {
+  model_.each_part([&](const Substructure&, std::size_t i) { solvers_[i]->linearise(at, accuracy); });
+}
+
+void SubstructureSet::respond(Eigen::VectorXd& bracket, const Eigen::VectorXd& h) {
+  model_.each_part([&](const Substructure&, std::size_t i) { solvers_[i]->reduce(bracket, h); });
+  for (const auto& solver : solvers_) solver->add_response(bracket);
+}
+
 void SubstructureSet::eliminate(Eigen::VectorXd& bracket, const Eigen::VectorXd& h, math::BlockMatrix& K) {
-  for (auto& solver : solvers_) {
-    solver->add_condensed(K);
-    solver->reduce(bracket, h);
-  }
+  respond(bracket, h);
+  for (const auto& solver : solvers_) solver->add_condensed(K);
 }
 
 void SubstructureSet::complete(Eigen::VectorXd& dq, Eigen::VectorXd& dy) {
-  for (auto& solver : solvers_) solver->expand(dq, dy);
+  model_.each_part([&](const Substructure&, std::size_t i) { solvers_[i]->expand(dq, dy); });
 }
 
 int SubstructureSet::unstable_directions() const {

@@ -81,6 +81,22 @@ void JointForces::add_control_force_on_rates(const model::IntervalPoint&, int co
   }
 }
 
+bool JointForces::expand(const model::IntervalPoint& at, const model::ExpansionRequest& request,
+                         model::ExpansionSink& sink) const {
+  Eigen::MatrixXd tangent = Eigen::MatrixXd::Zero(2, 3);
+  const Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(3, 3);
+  for (const TreeJointForce& force : forces_) {
+    const int control = force.law.control;
+    if (control >= 0 && request.squared[static_cast<std::size_t>(control)] != 0.0) return false;
+    const MiddleOf middle(at, force.coordinate);
+    const JointForce::Response r = force.law.respond(middle.position, middle.rate, at.u);
+    tangent.row(0) << r.by_position, r.by_rate, control < 0 ? 0.0 : force.law.control_factor;
+    sink.add({.rate = force.rate},
+             {.controls = {&control, 1}, .tangent = tangent, .hessian = request.a != nullptr ? &hessian : nullptr});
+  }
+  return true;
+}
+
 model::IntervalWork JointForces::work(const model::IntervalPoint& at) const {
   model::IntervalWork work;
   for (const TreeJointForce& force : forces_) {

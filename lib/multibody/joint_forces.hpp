@@ -71,6 +71,9 @@ class JointForces final : public model::IntervalTerm {
   void add_rate_tangent(const model::IntervalPoint& at, const model::TangentWeights& weights,
                         Eigen::VectorXd& diagonal) const override;
   void add_control_force_on_rates(const model::IntervalPoint& at, int control, Eigen::VectorXd& out) const override;
+  /// Forces are linear in pieces: their second derivatives are zero.
+  bool expand(const model::IntervalPoint& at, const model::ExpansionRequest& request,
+              model::ExpansionSink& sink) const override;
   model::IntervalWork work(const model::IntervalPoint& at) const override;
   std::vector<std::string> parts() const override { return parts_.names; }
   void energies(const model::NodePoint& at, std::span<model::Energy> out) const override;

@@ -1,6 +1,7 @@
 #include "multibody/loads.hpp"
 
 #include <Eigen/Geometry>
+#include <array>
 
 #include "math/rotation.hpp"
 
@@ -43,32 +44,74 @@ void Loads::add_forces(const model::IntervalPoint& at, model::IntervalForces& ou
   }
 }
 
+Loads::LocalMatrix Loads::unit_slope(const Load& load, const Eigen::VectorXd& q) {
+  LocalMatrix slope = LocalMatrix::Zero();
+  const bool follows = load.frame == Load::Frame::body;
+  if (load.kind == Load::Kind::force) {
+    if (!follows) return slope;
+    const Eigen::Vector4d w = weights_of(load.point);
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 3; ++j) slope.block<3, 3>(3 * i, 3 + 3 * j).diagonal().array() += w[i] * load.direction[j];
+    }
+    return slope;
+  }
+  const Eigen::Matrix3d turn = 0.5 * math::hat(world_direction(load, q));
+  for (int i = 0; i < 3; ++i) {
+    slope.block<3, 3>(3 + 3 * i, 3 + 3 * i) += turn;
+    if (!follows) continue;
+    const Eigen::Matrix3d d = 0.5 * math::hat(Eigen::Vector3d(q.segment<3>(12 * load.body + 3 + 3 * i)));
+    for (int j = 0; j < 3; ++j) slope.block<3, 3>(3 + 3 * i, 3 + 3 * j) -= load.direction[j] * d;
+  }
+  return slope;
+}
+
 void Loads::add_tangent(const model::IntervalPoint& at, const model::TangentWeights& weights,
                         math::BlockMatrix& K) const {
   if (weights.qq == 0.0) return;
   for (std::size_t l = 0; l < loads_.size(); ++l) {
     const Load& load = loads_[l];
-    const double factor = weights.qq * load.magnitude(at.u);
     Eigen::Map<Eigen::Matrix<double, 12, 12, Eigen::RowMajor>, 0, Eigen::OuterStride<>> block(
         K.data(slots_[l]), Eigen::OuterStride<>(slots_[l].stride));
-    const bool follows = load.frame == Load::Frame::body;
-    if (load.kind == Load::Kind::force) {
-      if (!follows) continue;
-      const Eigen::Vector4d w = weights_of(load.point);
-      for (int i = 0; i < 4; ++i)
-        for (int j = 0; j < 3; ++j) {
-          block.block<3, 3>(3 * i, 3 + 3 * j).diagonal().array() += factor * w[i] * load.direction[j];
-        }
-      continue;
-    }
-    const Eigen::Matrix3d turn = 0.5 * factor * math::hat(world_direction(load, at.q));
-    for (int i = 0; i < 3; ++i) {
-      block.block<3, 3>(3 + 3 * i, 3 + 3 * i) += turn;
-      if (!follows) continue;
-      const Eigen::Matrix3d d = 0.5 * factor * math::hat(Eigen::Vector3d(at.q.segment<3>(12 * load.body + 3 + 3 * i)));
-      for (int j = 0; j < 3; ++j) block.block<3, 3>(3 + 3 * i, 3 + 3 * j) -= load.direction[j] * d;
-    }
+    block += weights.qq * load.magnitude(at.u) * unit_slope(load, at.q);
   }
+}
+
+bool Loads::expand(const model::IntervalPoint& at, const model::ExpansionRequest& request,
+                   model::ExpansionSink& sink) const {
+  Eigen::MatrixXd tangent = Eigen::MatrixXd::Zero(24, 25);
+  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(25, 25);
+  std::array<int, 12> entries{};
+  for (const Load& load : loads_) {
+    const int first = 12 * load.body;
+    for (int k = 0; k < 12; ++k) entries[static_cast<std::size_t>(k)] = first + k;
+    // With a drive squared the force is magnitude(u) with u^2 as the variable, which is not affine.
+    if (load.control >= 0 && request.squared[static_cast<std::size_t>(load.control)] != 0.0) return false;
+    const double magnitude = load.magnitude(at.u);
+    const double slope = load.control < 0 ? 0.0 : load.control_factor;
+    tangent.topLeftCorner<12, 12>() = magnitude * unit_slope(load, at.q);
+    tangent.block<12, 1>(0, 24) = slope * unit_force(load, at.q);
+    if (request.a != nullptr) {
+      const Eigen::Matrix<double, 12, 1> a = request.a->segment<12>(first);
+      const Eigen::Matrix<double, 12, 1> by_control = slope * unit_slope(load, at.q).transpose() * a;
+      hessian.block<12, 1>(0, 24) = by_control;
+      hessian.block<1, 12>(24, 0) = by_control.transpose();
+      // The slope is linear in q: its derivatives are differences.
+      LocalMatrix bend = LocalMatrix::Zero();
+      if (load.kind == Load::Kind::torque && load.frame == Load::Frame::body) {
+        Eigen::VectorXd unit = Eigen::VectorXd::Zero(at.q.size());
+        for (int k = 3; k < 12; ++k) {
+          unit[first + k] = 1.0;
+          bend.col(k) = magnitude * unit_slope(load, unit).transpose() * a;
+          unit[first + k] = 0.0;
+        }
+      }
+      hessian.topLeftCorner<12, 12>() = bend;
+    }
+    const int control = load.control;
+    sink.add({.entries = entries},
+             {.controls = {&control, 1}, .tangent = tangent, .hessian = request.a != nullptr ? &hessian : nullptr});
+  }
+  return true;
 }
 
 void Loads::add_control_force(const model::IntervalPoint& at, int control, Eigen::VectorXd& out) const {

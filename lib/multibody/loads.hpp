@@ -38,13 +38,18 @@ class Loads final : public model::IntervalTerm {
   void add_tangent(const model::IntervalPoint& at, const model::TangentWeights& weights,
                    math::BlockMatrix& K) const override;
   void add_control_force(const model::IntervalPoint& at, int control, Eigen::VectorXd& out) const override;
+  bool expand(const model::IntervalPoint& at, const model::ExpansionRequest& request,
+              model::ExpansionSink& sink) const override;
   model::IntervalWork work(const model::IntervalPoint& at) const override;
   std::vector<std::string> parts() const override { return {}; }
   void energies(const model::NodePoint&, std::span<model::Energy>) const override {}
 
  private:
   using LocalForce = Eigen::Matrix<double, 12, 1>;
+  using LocalMatrix = Eigen::Matrix<double, 12, 12>;
   static LocalForce unit_force(const Load& load, const Eigen::VectorXd& q);
+  /// d(unit force)/dq of the body; constant but for torques carried by the body.
+  static LocalMatrix unit_slope(const Load& load, const Eigen::VectorXd& q);
 
   std::vector<Load> loads_;
   std::vector<math::BlockSlot> slots_;

@@ -1,5 +1,7 @@
 #include "multibody/rigid_body.hpp"
 
+#include "multibody/joint.hpp"
+
 namespace muldi::multibody {
 
 RigidBodies::RigidBodies(std::vector<RigidBody> bodies, const Eigen::Vector3d& gravity)
@@ -34,6 +36,21 @@ void RigidBodies::add_tangent(const model::IntervalPoint&, const model::TangentW
         for (int b = 0; b < 3; ++b) {
           block[(3 + 3 * a + k) * stride + 3 + 3 * b + k] += weights.vv * euler_[i](a, b);
         }
+      }
+    }
+  }
+}
+
+void RigidBodies::add_constant_mass(std::vector<model::MassEntry>& mass) const {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const int body = static_cast<int>(i);
+    const model::LinearPoint centre = body_point(body, Eigen::Vector3d::Zero());
+    mass.push_back({centre, centre, bodies_[i].mass});
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b < 3; ++b) {
+        if (euler_[i](a, b) == 0.0) continue;
+        mass.push_back({body_direction(body, Eigen::Vector3d::Unit(a)), body_direction(body, Eigen::Vector3d::Unit(b)),
+                        euler_[i](a, b)});
       }
     }
   }

@@ -29,6 +29,10 @@ class RigidBodies final : public model::IntervalTerm {
   void add_tangent(const model::IntervalPoint& at, const model::TangentWeights& weights,
                    math::BlockMatrix& K) const override;
   void add_control_force(const model::IntervalPoint&, int, Eigen::VectorXd&) const override {}
+  void add_constant_mass(std::vector<model::MassEntry>& mass) const override;
+  bool expand(const model::IntervalPoint&, const model::ExpansionRequest&, model::ExpansionSink&) const override {
+    return true;  // all of it is constant mass and constant weight
+  }
   model::IntervalWork work(const model::IntervalPoint&) const override { return {}; }
   std::vector<std::string> parts() const override;
   void energies(const model::NodePoint& at, std::span<model::Energy> out) const override;

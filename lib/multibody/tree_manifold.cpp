@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "multibody/projected_solvers.hpp"
+#include "multibody/tree_chart.hpp"
 
 namespace muldi::multibody {
 namespace {
@@ -129,6 +130,8 @@ void TreeManifold::difference(const Eigen::VectorXd& x_from, const Eigen::Vector
   }
   w.tail(n_plain_) = x_to.tail(n_plain_) - x_from.tail(n_plain_);
 }
+
+std::unique_ptr<model::Chart> TreeManifold::make_chart() const { return std::make_unique<TreeChart>(*this); }
 
 std::unique_ptr<model::Frame> TreeManifold::make_frame() const {
   auto frame = std::make_unique<TreeFrame>();

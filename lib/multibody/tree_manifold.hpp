@@ -24,6 +24,7 @@ class TreeManifold final : public model::Manifold {
   void configuration(const Eigen::VectorXd& x, Eigen::VectorXd& q) const override;
   void retract(const Eigen::VectorXd& x, const Eigen::VectorXd& w, Eigen::VectorXd& x_new) const override;
   void difference(const Eigen::VectorXd& x_from, const Eigen::VectorXd& x_to, Eigen::VectorXd& w) const override;
+  std::unique_ptr<model::Chart> make_chart() const override;
   std::unique_ptr<model::Frame> make_frame() const override;
   void update(const Eigen::VectorXd& x, const Eigen::VectorXd& q, model::Frame& frame) const override;
   model::LoopRank choose_loop_rows(model::Frame& frame) const override;
@@ -49,7 +50,7 @@ class TreeManifold final : public model::Manifold {
   const KinematicTree& tree() const { return tree_; }
   int n_plain() const { return n_plain_; }
   /// Rows of the loop-closing joints, and which joint each belongs to.
-  const std::vector<model::Bilinear>& loop_rows() const { return rows_; }
+  const std::vector<model::Bilinear>& loop_rows() const override { return rows_; }
   const std::vector<int>& loop_row_joint() const { return row_joint_; }
   /// Rows of all constraints of directors and tree joints, for tests and for `violation`.
   const std::vector<model::Bilinear>& tree_rows() const { return tree_rows_; }

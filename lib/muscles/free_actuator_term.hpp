@@ -148,6 +148,52 @@ class FreeActuatorTerm final : public model::IntervalTerm {
     }
   }
 
+  /// The length itself: F = g1, pi = g2, Psi = a g1 + b g2.
+  bool expand(const model::IntervalPoint& at, const model::ExpansionRequest& request,
+              model::ExpansionSink& sink) const override {
+    constexpr int n = Element::n_controls;
+    if constexpr (AxialElement<Element>) {
+      Eigen::MatrixXd tangent(2, 2 + n);
+      Eigen::MatrixXd hessian(2 + n, 2 + n);
+      for (const auto& actuator : actuators_) {
+        const auto s = actuator.state(at.q, at.v, at.u);
+        const ControlSlots<n> slots(actuator.controls, request.squared);
+        const AxialForces<2 + n> g =
+            slots.axial_forces(Isolated<Element>{actuator.element}, s.z, s.zd, s.e, request.a != nullptr);
+        for (int k = 0; k < 2 + n; ++k) {
+          tangent(0, k) = g.g1.d(k);
+          tangent(1, k) = g.g2.d(k);
+        }
+        slots.scale(tangent, 2);
+        if (request.a != nullptr) {
+          const double a = (*request.a)[actuator.dof];
+          const double b = (*request.b)[actuator.dof];
+          for (int i = 0; i < 2 + n; ++i) {
+            for (int j = 0; j < 2 + n; ++j) hessian(i, j) = a * g.g1.dd(i, j) + b * g.g2.dd(i, j);
+          }
+          slots.scale_both(hessian, 2);
+        }
+        sink.add(
+            {.entries = {&actuator.dof, 1}},
+            {.controls = slots.controls, .tangent = tangent, .hessian = request.a != nullptr ? &hessian : nullptr});
+      }
+      return true;
+    } else {
+      return false;
+    }
+  }
+
+  void list_limited(std::vector<model::LimitedMuscle>& muscles) const override {
+    if constexpr (LimitedElement<Element>) {
+      for (const auto& actuator : actuators_) {
+        model::LimitedMuscle muscle = limited_muscle(actuator.element, actuator.controls[0]);
+        muscle.name = std::string(Element::folder) + "/" + actuator.name;
+        muscle.entry = actuator.dof;
+        muscles.push_back(std::move(muscle));
+      }
+    }
+  }
+
   /// As of a TwoPointTerm: what vanishes with the rate dissipates, the rest is a drive.
   model::IntervalWork work(const model::IntervalPoint& at) const override {
     model::IntervalWork total;

@@ -10,22 +10,13 @@
 
 #include "model/interval_term.hpp"
 #include "model/linear_point.hpp"
+#include "muscles/axial_expansion.hpp"
+#include "muscles/control_input.hpp"
 #include "muscles/from_energy.hpp"
 #include "muscles/point_scatter.hpp"
 #include "muscles/two_point.hpp"
 
 namespace muldi::muscles {
-
-/// Where an element takes a control value from: a control of the model, or a constant.
-struct ControlInput {
-  int control = -1;       ///< index in the model's controls; -1: `constant`
-  double constant = 0.0;  ///< in the element's unit
-  double factor = 1.0;    ///< from the control's unit to the element's, e.g. 1/t from layer voltage to field
-
-  double value(std::span<const double> u) const {
-    return control < 0 ? constant : factor * u[static_cast<std::size_t>(control)];
-  }
-};
 
 /// One named element with its ends.
 template <TwoPointElement Element>
@@ -95,6 +86,62 @@ class TwoPointTerm final : public model::IntervalTerm {
             input.factor * point_control_force(component.element, component.state(at.q, at.v, at.u), c);
         component.a1.add_transposed(slope.head<3>(), out);
         component.a2.add_transposed(slope.tail<3>(), out);
+      }
+    }
+  }
+
+  void add_constant_mass(std::vector<model::MassEntry>& mass) const override {
+    if constexpr (AxialElement<Element>) {
+      for (const Component& component : components_) {
+        const EndMass m = end_mass_of(component.element);
+        if (m.m11 == 0.0 && m.m12 == 0.0 && m.m22 == 0.0) continue;
+        mass.push_back({component.a1, component.a1, m.m11});
+        mass.push_back({component.a1, component.a2, m.m12});
+        mass.push_back({component.a2, component.a1, m.m12});
+        mass.push_back({component.a2, component.a2, m.m22});
+      }
+    }
+  }
+
+  /// Elements of the fast path depend on the vector between their ends. Others have no such expansion.
+  bool expand(const model::IntervalPoint& at, const model::ExpansionRequest& request,
+              model::ExpansionSink& sink) const override {
+    if constexpr (AxialElement<Element>) {
+      constexpr int n = Element::n_controls;
+      Eigen::MatrixXd tangent(6, 6 + n);
+      Eigen::MatrixXd hessian(6 + n, 6 + n);
+      for (const Component& component : components_) {
+        const auto x = component.state(at.q, at.v, at.u);
+        RelativeState relative{.r = x.a1 - x.a2, .w = x.v1 - x.v2};
+        if (request.a != nullptr) {
+          relative.a = component.a1.rate(*request.a) - component.a2.rate(*request.a);
+          relative.b = component.a1.rate(*request.b) - component.a2.rate(*request.b);
+        }
+        const LineExpansion line(relative);
+        const ControlSlots<n> slots(component.controls, request.squared);
+        const AxialForces<2 + n> g = slots.axial_forces(component.element, line.z, line.zd, x.e, request.a != nullptr);
+        relative_tangent<n>(line, g, tangent);
+        if (request.a != nullptr) relative_hessian<n>(line, g, hessian);
+        slots.scale(tangent, 6);
+        if (request.a != nullptr) slots.scale_both(hessian, 6);
+        const model::LinearPoint between = component.a1 - component.a2;
+        sink.add(
+            {.points = {&between, 1}},
+            {.controls = slots.controls, .tangent = tangent, .hessian = request.a != nullptr ? &hessian : nullptr});
+      }
+      return true;
+    } else {
+      return false;
+    }
+  }
+
+  void list_limited(std::vector<model::LimitedMuscle>& muscles) const override {
+    if constexpr (LimitedElement<Element>) {
+      for (const Component& component : components_) {
+        model::LimitedMuscle muscle = limited_muscle(component.element, component.controls[0]);
+        muscle.name = std::string(Element::folder) + "/" + component.name;
+        muscle.ends = {component.a1, component.a2};
+        muscles.push_back(std::move(muscle));
       }
     }
   }

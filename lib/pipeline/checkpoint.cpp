@@ -63,7 +63,7 @@ CheckpointWriter::CheckpointWriter(const model::Model& model, std::size_t n_row)
   });
   checkpoint_.integers = {{"step", {-1}}, {"solver", {0, 0}}};
   if (model.substructures.empty()) return;
-  checkpoint_.integers.push_back({"factor", {0, 0}});
+  checkpoint_.integers.push_back({"factor", {0, 0, 0}});
   if (const Eigen::Index n = memory_of(model); n > 0) checkpoint_.reals.push_back({memory, zeros(n)});
 }
 
@@ -98,6 +98,7 @@ const results::Checkpoint& CheckpointWriter::write(const variational::State& sta
   if (model_.substructures.empty()) return checkpoint_;
   checkpoint_.integers[2].values[0] = state.factor.valid ? 1 : 0;
   checkpoint_.integers[2].values[1] = state.factor.first ? 1 : 0;
+  checkpoint_.integers[2].values[2] = state.exact_steps;
   write_memory();
   return checkpoint_;
 }
@@ -128,6 +129,7 @@ variational::State state_of(const results::Checkpoint& checkpoint, const scene::
   } else {
     state.factor.valid = checkpoint.integer("factor")[0] != 0;
     state.factor.first = checkpoint.integer("factor")[1] != 0;
+    if (checkpoint.integer("factor").size() > 2) state.exact_steps = static_cast<int>(checkpoint.integer("factor")[2]);
   }
   model.manifold->configuration(state.x, state.q);
   return state;

@@ -10,6 +10,8 @@
 #include "build/place_bodies.hpp"
 #include "multibody/joint_coordinate.hpp"
 #include "pipeline/checkpoint.hpp"
+#include "pipeline/joint_momenta.hpp"
+#include "pipeline/led_solids.hpp"
 #include "statics/sweep.hpp"
 #include "variational/node_values.hpp"
 
@@ -202,39 +204,26 @@ void close_loops(const scene::Scene& scene, const build::BuiltModel& built, cons
                            gap))});
 }
 
-Eigen::VectorXd rates_of_momentum(const scene::Scene& scene, const build::BuiltModel& built, const Eigen::VectorXd& x) {
-  const multibody::TreeManifold& manifold = *built.manifold;
-  Eigen::VectorXd m = Eigen::VectorXd::Zero(manifold.n_v());
-  for (const auto& entry : scene.initial.momentum) {
-    const auto* link = built.link_of_joint(static_cast<std::size_t>(scene.joints.index(entry.name)));
-    if (link == nullptr) {
-      throw base::InputError(
-          {scene::error_at(entry.origin, "this joint closes a loop; give the momentum of another joint of the loop")});
+/// Adds to v (n_q) the velocities of solids: with the bodies that they are tied to, which move by `rates`, and the
+/// rigid motions that the scene gives to them; prescribed positions do not take part.
+void add_velocities(const scene::Scene& scene, const build::BuiltModel& built, const variational::State& state,
+                    const Eigen::VectorXd& rates, Eigen::VectorXd& v) {
+  if (built.solids.empty()) return;
+  LedSolids led(built, scene.solver.tolerance);
+  if (led.any() && !rates.isZero(0.0)) {
+    const auto frame = built.manifold->make_frame();
+    built.manifold->update(state.x, state.q, *frame);
+    Eigen::VectorXd of_bodies = Eigen::VectorXd::Zero(v.size());
+    built.manifold->lift(*frame, rates, of_bodies);
+    led.add_velocities({.x = state.x, .multipliers = {}, .q = state.q, .y = state.y}, of_bodies);
+    for (const fem::Solid* solid : built.solids) {
+      const bool given = scene.initial.solids.find(solid->data().name) != nullptr;
+      const model::Slice& slice = solid->q_slice();
+      if (!given) v.segment(slice.first, slice.size) += of_bodies.segment(slice.first, slice.size);
     }
-    for (std::size_t k = 0; k < entry.value.values.size(); ++k) {
-      m[link->first_rate + static_cast<int>(k)] = entry.value.values[k];
-    }
+    v.head(built.manifold->n_q()) += of_bodies.head(built.manifold->n_q());
   }
-  Eigen::VectorXd q(manifold.n_q());
-  manifold.configuration(x, q);
-  const auto frame = manifold.make_frame();
-  manifold.update(x, q, *frame);
-  manifold.choose_loop_rows(*frame);
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(manifold.n_q());
-  std::vector<double> u(built.model->controls.size());
-  built.model->evaluate_controls(0.0, u);
-  math::BlockMatrix M(*built.model->pattern);
-  built.model->tangent({.q0 = q, .q1 = q, .q = q, .v = zero, .u = u}, model::TangentWeights::mass(), M);
-  const auto solver = manifold.make_solver(*built.model->pattern, "auto");
-  Eigen::VectorXd rates = Eigen::VectorXd::Zero(manifold.n_v());
-  Eigen::VectorXd mu = Eigen::VectorXd::Zero(manifold.n_c());
-  if (solver->factorise(*frame, *frame, M)) solver->solve(m, Eigen::VectorXd::Zero(manifold.n_c()), rates, mu);
-  return rates;
-}
-
-/// Adds the rigid motions that the scene gives to solids; prescribed positions do not take part.
-void add_solid_velocities(const scene::Scene& scene, const build::BuiltModel& built, const Eigen::VectorXd& q,
-                          Eigen::VectorXd& v) {
+  const Eigen::VectorXd& q = state.q;
   for (const auto& entry : scene.initial.solids) {
     const fem::Solid& solid = *built.solids[static_cast<std::size_t>(scene.solids.index(entry.name))];
     const Eigen::Vector3d velocity = build::to_eigen(entry.value.velocity.value_or(base::Vec3{}));
@@ -243,8 +232,8 @@ void add_solid_velocities(const scene::Scene& scene, const build::BuiltModel& bu
     for (Eigen::Index first = solid.q_slice().first; first < solid.q_slice().end(); first += 3) {
       v.segment<3>(first) += velocity + omega.cross(Eigen::Vector3d(q.segment<3>(first)) - centre);
     }
-    solid.keep_free(v);
   }
+  for (const auto& part : built.model->substructures) part->follow(v);
 }
 
 }  // namespace
@@ -276,8 +265,19 @@ statics::StaticState starting_point(const scene::Scene& scene, const build::Buil
                              .multipliers = Eigen::VectorXd::Zero(built.manifold->n_loop_rows()),
                              .q = Eigen::VectorXd::Zero(model.n_q()),
                              .y = Eigen::VectorXd::Zero(model.n_y())};
+  const bool moved = std::any_of(scene.initial.joints.begin(), scene.initial.joints.end(),
+                                 [](const auto& entry) { return !entry.value.position.empty(); });
+  LedSolids solids(built, scene.solver.tolerance);
+  const bool led = moved && solids.any();
+  const Eigen::VectorXd x = start.x;
+  if (led) start.x = built.manifold->reference();
   built.manifold->configuration(start.x, start.q);
   for (const auto& part : model.substructures) part->start(start.q, start.y);
+  if (led && !solids.lead_to(x, start)) {
+    throw base::InputError({scene::error_at(
+        scene.initial.joints[0].origin,
+        "the solids that are fixed to the bodies find no rest at the initial joint positions: give smaller ones")});
+  }
   return start;
 }
 
@@ -286,6 +286,7 @@ Outcome settle(const scene::Scene& scene, const build::BuiltModel& built, static
   built.model->evaluate_controls(0.0, u);
   statics::SweepOptions options{.from = 0.0, .to = 1.0, .steps = 4};
   options.equilibrium.tolerance = scene.solver.tolerance;
+  options.equilibrium.substructures = built.solid_linear;
   statics::Sweep sweep(*built.model, std::vector<double>(u.size(), 0.0), u, options);
   const statics::SweepResult result = sweep.run(state, {});
   if (result.end != statics::SweepResult::End::completed) {
@@ -322,7 +323,7 @@ Eigen::VectorXd initial_rates(const scene::Scene& scene, const build::BuiltModel
     if (!errors.empty()) throw base::InputError(std::move(errors));
     rates = scale.cwiseProduct(solution);
   }
-  if (!scene.initial.momentum.empty()) rates += rates_of_momentum(scene, built, x);
+  static_cast<void>(wanted_momenta(scene, built));  // says what cannot be given
   return rates;
 }
 
@@ -336,7 +337,7 @@ Outcome initial_state(const scene::Scene& scene, const build::BuiltModel& built,
   built.model->evaluate_controls(scene.dynamics ? 0.5 * scene.dynamics->step : 0.0, u);
   if (earlier) {
     state = state_of(*earlier, scene, *built.model);
-    variational::NodeEvaluator nodes(*built.model, "auto");
+    variational::NodeEvaluator nodes(*built.model, "auto", built.solid_linear);
     nodes.evaluate(state, u, u, values);
     rates = values.rate;
   } else {
@@ -352,13 +353,19 @@ Outcome initial_state(const scene::Scene& scene, const build::BuiltModel& built,
   const Eigen::VectorXd added = initial_rates(scene, built, state.x);
   rates = rates.size() == 0 ? added : Eigen::VectorXd(rates + added);
   manifold.configuration(state.x, state.q);
+  Eigen::VectorXd v = values.v.size() > 0 ? values.v : Eigen::VectorXd(Eigen::VectorXd::Zero(built.model->n_q()));
+  add_velocities(scene, built, state, added, v);
   const auto frame = manifold.make_frame();
   manifold.update(state.x, state.q, *frame);
-  Eigen::VectorXd v = values.v.size() > 0 ? values.v : Eigen::VectorXd(Eigen::VectorXd::Zero(built.model->n_q()));
+  if (!scene.initial.momentum.empty()) rates += rates_of_momentum(built, state.x, wanted_momenta(scene, built));
   v.head(manifold.n_q()).setZero();
   manifold.lift(*frame, rates, v);
-  add_solid_velocities(scene, built, state.q, v);
-  variational::NodeEvaluator(*built.model, "auto").momentum_of(state.q, v, u, state.p);
+  variational::NodeEvaluator nodes(*built.model, "auto", built.solid_linear);
+  nodes.momentum_of(state.q, v, u, state.p);
+  if (!scene.initial.momentum.empty() && !built.solids.empty() && nodes.evaluate(state, u, u, values)) {
+    rates = values.rate;
+    v = values.v;
+  }
   state.step = 0;
   state.t = 0.0;
   state.increment = (scene.dynamics ? scene.dynamics->step : 0.0) * rates;

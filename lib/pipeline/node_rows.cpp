@@ -12,10 +12,14 @@ NodeRows::NodeRows(results::Recorder& recorder, const scene::Scene& scene, const
       built_(built),
       kind_(kind),
       units_(scene.units),
-      prefix_(kind == Kind::dynamics ? "" : "statics/"),
+      prefix_(kind == Kind::statics  ? "statics/"
+              : kind == Kind::replay ? "replay/"
+                                     : ""),
       record_every_(scene.record.every) {
-  results::SeriesSpec axis{
-      .axis = "time", .unit = units_.unit_name(dim::time), .doc = "time of the nodes", .expected_rows = expected_rows};
+  results::SeriesSpec axis{.axis = prefix_ + "time",
+                           .unit = units_.unit_name(dim::time),
+                           .doc = "time of the nodes",
+                           .expected_rows = expected_rows};
   if (kind == Kind::statics) {
     const bool swept = scene.statics->control.has_value();
     axis.axis = "statics/load";
@@ -26,13 +30,13 @@ NodeRows::NodeRows(results::Recorder& recorder, const scene::Scene& scene, const
   fields_.emplace(
       recorder, built, units_,
       FieldAxis{
-          .prefix = prefix_, .name = kind == Kind::dynamics ? "times" : "load", .unit = axis.unit, .doc = axis.doc},
+          .prefix = prefix_, .name = kind == Kind::statics ? "load" : "times", .unit = axis.unit, .doc = axis.doc},
       expected_rows);
   declare_common();
-  if (kind == Kind::dynamics) {
-    declare_dynamics();
-  } else {
+  if (kind == Kind::statics) {
     declare_statics();
+  } else {
+    declare_dynamics();
   }
 }
 
@@ -84,7 +88,7 @@ void NodeRows::declare_dynamics() {
                              "total + dissipated - external - source, less its value at t = 0; zero for dt to 0");
   channel_.linear = declare("momentum/linear", {3}, dim::momentum, "linear momentum of the system");
   channel_.angular = declare("momentum/angular", {3}, dim::momentum * dim::length, "angular momentum about the origin");
-  channel_.factorisations = recorder_.declare_channel(series_, {.path = "solver/factorisations",
+  channel_.factorisations = recorder_.declare_channel(series_, {.path = prefix_ + "solver/factorisations",
                                                                 .unit = "1",
                                                                 .doc = "factorisations of the step that ends here",
                                                                 .type = results::ValueType::int64});
@@ -114,7 +118,7 @@ void NodeRows::write_common(const model::NodeView& view, std::span<const model::
   recorder_.append(channel_.electric, total.electric);
   recorder_.append(channel_.gravity, total.gravity);
   recorder_.append(channel_.total, total.kinetic + total.potential());
-  if (kind_ == Kind::dynamics) recorder_.append(channel_.kinetic, total.kinetic);
+  if (kind_ != Kind::statics) recorder_.append(channel_.kinetic, total.kinetic);
 }
 
 void NodeRows::write(const variational::NodeRecord& node) {

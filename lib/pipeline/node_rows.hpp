@@ -14,7 +14,7 @@ namespace muldi::pipeline {
 /// Declares the channels of one series and fills its rows; nothing is allocated after the start of the recorder.
 class NodeRows {
  public:
-  enum class Kind { dynamics, statics };
+  enum class Kind { dynamics, statics, replay };  ///< a replay: dynamics under /replay
 
   NodeRows(results::Recorder& recorder, const scene::Scene& scene, const build::BuiltModel& built, Kind kind,
            std::size_t expected_rows);

@@ -1,6 +1,7 @@
 #include "pipeline/run.hpp"
 
 #include "base/error.hpp"
+#include "base/memory.hpp"
 #include "base/text.hpp"
 #include "pipeline/checkpoint.hpp"
 #include "pipeline/initial_state.hpp"
@@ -24,6 +25,10 @@ variational::LoopOptions loop_options(const scene::Scene& scene, const build::Bu
   options.step.tolerance = scene.solver.tolerance;
   options.step.max_iterations = scene.solver.max_iterations;
   options.step.linear = built.linear;
+  if (scene.dynamics->integrator == scene::Integrator::explicit_scheme) {
+    options.integrator = variational::Integrator::explicit_scheme;
+  }
+  options.step.substructures = built.solid_linear;
   return options;
 }
 
@@ -52,7 +57,9 @@ class DynamicsRun {
   }
 
   Outcome prepare(const std::optional<results::Checkpoint>& earlier) {
-    return initial_state(scene_, built_, earlier, state_);
+    const Outcome outcome = initial_state(scene_, built_, earlier, state_);
+    if (outcome.completed()) prepare_loop(scene_.statics.has_value());
+    return outcome;
   }
 
   void resume(const results::Checkpoint& checkpoint) {
@@ -60,10 +67,11 @@ class DynamicsRun {
     state_.t = static_cast<double>(state_.step) * options_.dt;
     restore_memory(checkpoint, *built_.model);
     restore(checkpoint, ledger_, last_, rows_.observed());
+    prepare_loop(false);
   }
 
   Outcome run(RunContext& context) {
-    variational::TimeLoop loop(*built_.model, options_);
+    if (!loop_) loop_.emplace(*built_.model, options_);
     variational::LoopCallbacks callbacks;
     callbacks.record = [&](const variational::NodeRecord& node) {
       rows_.write(node);
@@ -78,12 +86,25 @@ class DynamicsRun {
     callbacks.warn = [&](const variational::StepReport& report, double t) {
       if (context.warn) context.warn(warning_of(report, options_.step, t));
     };
-    const variational::LoopResult result = loop.run(state_, ledger_, last_, callbacks);
+    const variational::LoopResult result = loop_->run(state_, ledger_, last_, callbacks);
     if (result.status == variational::Status::no_convergence) return failure(result);
     return {.status = result.status, .sentence = result.sentence, .time = result.t};
   }
 
  private:
+  /// Makes the solvers before a record is begun, so that nothing is left of a run that does not fit into this machine.
+  /// Where statics come first, whose solvers take as much, only the sizes are asked for.
+  void prepare_loop(bool later) {
+    if (!later) {
+      loop_.emplace(*built_.model, options_);
+      return;
+    }
+    for (const auto& part : built_.model->substructures) {
+      const model::SolverSize size = part->solver_size(model::Linearisation::step, options_.step.substructures);
+      base::require_memory(size.factor_bytes, "the factorised matrix of a solid", "take fewer cells");
+    }
+  }
+
   /// Newton's iteration ends nowhere where the motion is too fast for the step: that can be said.
   Outcome failure(const variational::LoopResult& result) const {
     const double turn = expected_turn();
@@ -122,6 +143,7 @@ class DynamicsRun {
   variational::LoopOptions options_;
   NodeRows rows_;
   CheckpointWriter checkpoints_;
+  std::optional<variational::TimeLoop> loop_;
   variational::State state_;
   variational::Ledger ledger_;
   variational::StepReport last_;
@@ -133,6 +155,7 @@ Outcome run_parts(std::optional<StaticsRun>& statics, std::optional<DynamicsRun>
   if (statics && !resumed) {
     const base::Phases::Scope scope(context.phases, "statics");
     outcome = statics->run(context);
+    statics.reset();  // and its solvers
   }
   if (dynamics && outcome.completed()) {
     const base::Phases::Scope scope(context.phases, "dynamics");

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "pipeline/initial_state.hpp"
 
 namespace muldi::pipeline {
@@ -17,7 +18,31 @@ StaticsRun::StaticsRun(const scene::Scene& scene, const build::BuiltModel& built
       zero_v_(Eigen::VectorXd::Zero(built.manifold->n_v())),
       constraint_force_(zero_q_) {}
 
-void StaticsRun::prepare() { state_ = starting_point(scene_, built_); }
+void StaticsRun::prepare() {
+  state_ = starting_point(scene_, built_);
+  make_sweep();
+}
+
+void StaticsRun::make_sweep() {
+  const scene::Statics& said = *scene_.statics;
+  std::vector<double> u(built_.model->controls.size());
+  built_.model->evaluate_controls(0.0, u);
+  std::vector<double> direction(u.size(), 0.0);
+  statics::SweepOptions options{.steps = said.steps};
+  if (said.control) {
+    const auto swept = static_cast<std::size_t>(scene_.controls.index(said.control->name));
+    u[swept] = 0.0;
+    direction[swept] = 1.0;
+    options.from = said.from;
+    options.to = *said.to;
+  } else {
+    std::swap(u, direction);
+  }
+  options.continuation = said.continuation == scene::Continuation::natural ? statics::Continuation::natural
+                                                                           : statics::Continuation::arc_length;
+  options.equilibrium = {.tolerance = scene_.solver.tolerance, .substructures = built_.solid_linear};
+  sweep_.emplace(*built_.model, std::move(u), std::move(direction), options);
+}
 
 double StaticsRun::last_load() const { return scene_.statics->control ? *scene_.statics->to : 1.0; }
 
@@ -25,6 +50,7 @@ void StaticsRun::record(const statics::SweepPoint& point) {
   const std::span<const double> x(point.state.x.data(), static_cast<std::size_t>(point.state.x.size()));
   built_.model->energies({.x = x, .q = point.q, .v = zero_q_, .u = point.u}, parts_);
   constraint_force_ = -point.force;
+  for (const auto& part : built_.model->substructures) part->gather(constraint_force_);
   const model::NodeView view{.t = point.load,
                              .x = point.state.x,
                              .rate = zero_v_,
@@ -44,39 +70,40 @@ void StaticsRun::record(const statics::SweepPoint& point) {
               view);
 }
 
+void StaticsRun::report_critical(const std::vector<statics::CriticalPoint>& points, const RunContext& context) {
+  using Kind = statics::CriticalPoint::Kind;
+  for (const Kind kind : {Kind::limit, Kind::branch}) {
+    int number = 0;
+    for (const statics::CriticalPoint& point : points) {
+      if (point.kind != kind) continue;
+      const std::string name = kind == Kind::limit ? "limit_load" : "branch_load";
+      recorder_.set_attribute("statics", ++number == 1 ? name : name + "_" + std::to_string(number), point.load);
+      if (!context.warn) continue;
+      const std::string load = base::format("{:.10g}", point.load);
+      context.warn(kind == Kind::limit
+                       ? "statics: the load turns at the limit point " + load
+                       : "statics: the stability changes at the load " + load + ", where another branch crosses");
+    }
+  }
+}
+
 Outcome StaticsRun::run(RunContext& context) {
   const scene::Statics& said = *scene_.statics;
-  std::vector<double> u(built_.model->controls.size());
-  built_.model->evaluate_controls(0.0, u);
-  std::vector<double> direction(u.size(), 0.0);
-  statics::SweepOptions options{.steps = said.steps};
-  if (said.control) {
-    const auto swept = static_cast<std::size_t>(scene_.controls.index(said.control->name));
-    u[swept] = 0.0;
-    direction[swept] = 1.0;
-    options.from = said.from;
-    options.to = *said.to;
-  } else {
-    std::swap(u, direction);
-  }
-  options.continuation = said.continuation == scene::Continuation::natural ? statics::Continuation::natural
-                                                                           : statics::Continuation::arc_length;
-  options.equilibrium = {.tolerance = scene_.solver.tolerance};
-  statics::Sweep sweep(*built_.model, std::move(u), std::move(direction), options);
   long row = 0;
-  const statics::SweepResult result = sweep.run(state_, {.record =
-                                                             [&](const statics::SweepPoint& point) {
-                                                               record(point);
-                                                               if (context.progress) {
-                                                                 context.progress(row++, said.steps, point.load);
-                                                               }
-                                                             },
-                                                         .interrupted = context.interrupted});
+  const statics::SweepResult result = sweep_->run(state_, {.record =
+                                                               [&](const statics::SweepPoint& point) {
+                                                                 record(point);
+                                                                 if (context.progress) {
+                                                                   context.progress(row++, said.steps, point.load);
+                                                                 }
+                                                               },
+                                                           .interrupted = context.interrupted});
   using End = statics::SweepResult::End;
   if (result.end == End::loss_of_equilibrium) {
     recorder_.set_attribute("statics", "critical_load_above", result.last_good);
     recorder_.set_attribute("statics", "critical_load_below", result.first_bad);
   }
+  report_critical(result.critical, context);
   const auto status = result.end == End::completed             ? variational::Status::completed
                       : result.end == End::interrupted         ? variational::Status::interrupted
                       : result.end == End::loss_of_equilibrium ? variational::Status::loss_of_equilibrium

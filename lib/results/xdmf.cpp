@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "results/hdf5_file.hpp"
+#include "results/xdmf_drawing.hpp"
 
 namespace muldi::results {
 namespace {
@@ -86,16 +87,17 @@ class Writer {
  public:
   explicit Writer(std::string file) : file_(std::move(file)) {}
 
-  std::string text(const std::vector<Fields>& all) {
+  std::string text(const std::vector<Fields>& all, const std::string& drawn) {
     text_ = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n";
     for (const Fields& fields : all) {
+      ++collection_;
       const std::string name = fields.folder.substr(fields.folder.rfind('/') + 1);
       text_ +=
           base::format("    <Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Temporal\">\n", escaped(name));
       for (std::size_t row = 0; row < fields.times.size(); ++row) add_grid(fields, name, row);
       text_ += "    </Grid>\n";
     }
-    return text_ + "  </Domain>\n</Xdmf>\n";
+    return text_ + drawn + "  </Domain>\n</Xdmf>\n";
   }
 
  private:
@@ -108,11 +110,16 @@ class Writer {
     const auto is_position = [](const Field& field) { return field.name == "position"; };
     const auto position = std::find_if(fields.fields.begin(), fields.fields.end(), is_position);
     if (position != fields.fields.end()) {
+      // By reference: ParaView complains about a geometry that is cut out of a data set, though it reads it.
+      text_ +=
+          base::format("          <DataItem Reference=\"XML\">/Xdmf/Domain/Grid[{}]/Grid[{}]/DataItem</DataItem>\n",
+                       collection_, row + 1);
+      text_ += "        </Geometry>\n";
       add_row(fields.folder + "/position", position->shape, row);
     } else {
       add_whole(fields.folder + "/reference", {fields.n_nodes, 3}, "Float");
+      text_ += "        </Geometry>\n";
     }
-    text_ += "        </Geometry>\n";
     for (const Field& field : fields.fields) {
       if (is_position(field)) continue;
       begin_attribute(field.name, type_of(field), field.at_nodes);
@@ -123,6 +130,12 @@ class Writer {
       begin_attribute("reference", "Vector", true);
       add_whole(fields.folder + "/reference", {fields.n_nodes, 3}, "Float");
       text_ += "        </Attribute>\n";
+      begin_attribute("displacement", "Vector", true);
+      text_ += base::format("          <DataItem ItemType=\"Function\" Function=\"$0 - $1\" Dimensions=\"{} 3\">\n",
+                            fields.n_nodes);
+      add_row(fields.folder + "/position", position->shape, row);
+      add_whole(fields.folder + "/reference", {fields.n_nodes, 3}, "Float");
+      text_ += "          </DataItem>\n        </Attribute>\n";
     }
     text_ += "      </Grid>\n";
   }
@@ -166,6 +179,7 @@ class Writer {
 
   std::string file_;
   std::string text_;
+  std::size_t collection_ = 0;
 };
 
 void write_file(const std::filesystem::path& path, const std::string& text) {
@@ -176,16 +190,17 @@ void write_file(const std::filesystem::path& path, const std::string& text) {
 
 }  // namespace
 
-std::vector<std::string> write_xdmf(const std::string& result_path) {
+std::vector<std::string> write_xdmf(const std::string& result_path, const Drawing& drawing) {
   const std::filesystem::path result(result_path);
   const hdf5::File file = hdf5::File::open(result_path, hdf5::Access::read);
   std::vector<std::string> written;
   for (const std::string& prefix : {std::string(), std::string("statics/")}) {
     const std::vector<Fields> all = fields_below(file, prefix);
-    if (all.empty()) continue;
+    const std::string drawn = drawing_grids(file, drawing, prefix);
+    if (all.empty() && drawn.empty()) continue;
     std::filesystem::path path = result;
     path.replace_extension(written.empty() ? ".xdmf" : ".statics.xdmf");
-    write_file(path, Writer(result.filename().string()).text(all));
+    write_file(path, Writer(result.filename().string()).text(all, drawn));
     written.push_back(path.string());
   }
   return written;

@@ -1,7 +1,7 @@
 // Muscles, springs, loads, the initial state and the tasks.
-#include <cmath>
 
 #include "base/text.hpp"
+#include "scene/multiples.hpp"
 #include "scene/scene_check.hpp"
 
 namespace muldi::scene {
@@ -99,10 +99,41 @@ void SceneCheck::check_muscle_model(Entry<Muscle>& entry) {
   check_muscle_control(entry, *options);
   const Entry<Material>* material = scene_.materials.find(entry.value.material.name);
   if (material == nullptr || failed({"materials", material->name, "elastic"})) return;
-  if (!std::holds_alternative<NeoHookean>(material->value.elastic.law)) {
+  if constexpr (std::is_same_v<Model, MeshedMuscle>) {
+    check_meshed_muscle(entry, *options, material->value.elastic);
+  } else if (!std::holds_alternative<NeoHookean>(material->value.elastic.law)) {
     error({"muscles", entry.name, "material"}, "model '" + std::string(Model::name) +
                                                    "' needs a material with elastic model neo_hookean, not '" +
                                                    material->name + "'");
+  }
+}
+
+void SceneCheck::check_meshed_muscle(const Entry<Muscle>& entry, const MeshedMuscle& mesh, const Elastic& elastic) {
+  const std::string_view name = entry.name;
+  if (entry.value.ends == MuscleEnds::free) {
+    error({"muscles", name, "ends"},
+          "model 'fe' has both ends attached; an isolated actuator of finite elements is a solid with conditions");
+  }
+  if (scene_.solids.find(name) != nullptr) {
+    error({"muscles", name}, "a solid has the same name: call one of them otherwise, to tell their results apart");
+  }
+  if (failed({"muscles", name, "fe"})) return;
+  if (mesh.section_axis) check_direction({"muscles", name, "fe", "section_axis"}, *mesh.section_axis);
+  const std::string why_no_mesh = mesh.why_no_mesh(entry.value.section);
+  if (!why_no_mesh.empty()) error({"muscles", name, "fe", "section_cells"}, why_no_mesh);
+  const Entry<Material>& material = *scene_.materials.find(entry.value.material.name);
+  const std::string why_unfit =
+      scene::why_unfit(formulation_of(mesh.formulation, material.value), elastic, material.name);
+  if (!why_unfit.empty()) error({"muscles", name, "fe", "formulation"}, why_unfit);
+  const bool two_constants =
+      std::holds_alternative<NeoHookean>(elastic.law) || std::holds_alternative<BonetWood>(elastic.law);
+  if (two_constants) return;
+  for (const auto& [key, given] : {std::pair("young", mesh.replacements.young.has_value()),
+                                   std::pair("mu", mesh.replacements.shear_modulus.has_value())}) {
+    if (given) {
+      error({"muscles", name, "fe", key},
+            "replaces a constant of neo_hookean or bonet_wood; material '" + material.name + "' has another law");
+    }
   }
 }
 
@@ -110,7 +141,7 @@ void SceneCheck::muscles() {
   for (Entry<Muscle>& entry : scene_.muscles) {
     if (failed({"muscles", entry.name, "model"})) continue;
     check_muscle_ends(entry);
-    base::for_each_type(muscles::MuscleModels{}, [&]<class Model>(std::type_identity<Model>) {
+    base::for_each_type(MuscleModels{}, [&]<class Model>(std::type_identity<Model>) {
       if (entry.value.model == muscle_model<Model>) check_muscle_model<Model>(entry);
     });
   }
@@ -155,6 +186,28 @@ void SceneCheck::initial() {
   }
 }
 
+void SceneCheck::check_explicit() {
+  const auto refuse = [&](const std::string& why) { error({"dynamics", "integrator"}, why + ": take midpoint"); };
+  const std::string alone = "the explicit integrator moves solids alone, but the scene has ";
+  if (!scene_.bodies.empty()) refuse(alone + "bodies");
+  if (!scene_.muscles.empty()) refuse(alone + "muscles");
+  if (scene_.solids.empty()) refuse("the explicit integrator moves solids, of which the scene has none");
+  for (const Entry<Solid>& solid : scene_.solids) {
+    if (!solid.value.attach.empty()) refuse(alone + "attachments of solid " + base::in_quotes(solid.name));
+    for (const MaterialName& name : solid.value.material.names()) {
+      const Entry<Material>* material = scene_.materials.find(name.name);
+      if (material == nullptr || context_.failed("materials." + name.name)) continue;
+      if (material->value.viscous) {
+        refuse("the explicit integrator has no damping, but material " + base::in_quotes(name.name) + " is viscous");
+      }
+      if (formulation_of(solid.value.formulation, material->value) != Formulation::displacement) {
+        refuse("the explicit integrator goes with `formulation: displacement`, which solid " +
+               base::in_quotes(solid.name) + " does not have");
+      }
+    }
+  }
+}
+
 void SceneCheck::tasks() {
   if (scene_.statics && !failed({"statics"})) {
     const Statics& statics = *scene_.statics;
@@ -170,6 +223,7 @@ void SceneCheck::tasks() {
     context_.add(error_at(recorded.body.origin, "the ground does not move: nothing to record"));
   }
   if (!scene_.dynamics || failed({"dynamics"})) return;
+  if (scene_.dynamics->integrator == Integrator::explicit_scheme) check_explicit();
   const Dynamics& dynamics = *scene_.dynamics;
   const double steps = dynamics.duration / dynamics.step;
   const double most_steps = 2e9;
@@ -177,15 +231,8 @@ void SceneCheck::tasks() {
     error({"dynamics", "step"}, "gives " + base::number_text(steps, 3) + " steps, at most 2e9 are run");
     return;
   }
-  // Both numbers are rounded once where they are written, so their quotient is off by a few units in the last place.
-  if (std::abs(steps - std::round(steps)) <= 1e-9 * steps && steps > 0.5) return;
-  const std::string unit = " " + scene_.units.time();
-  const double below = std::floor(steps) * dynamics.step;
-  const double above = std::ceil(steps) * dynamics.step;
-  error({"dynamics", "duration"},
-        "is no multiple of the step " + base::number_text(dynamics.step, 12) + unit + ": take " +
-            (below > 0.0 ? base::number_text(below, 12) + unit + " or " : std::string()) +
-            base::number_text(above, 12) + unit + ", got " + base::number_text(dynamics.duration, 12) + unit);
+  std::string why = why_no_multiple(dynamics.duration, dynamics.step, "the step", scene_.units.time());
+  if (!why.empty()) error({"dynamics", "duration"}, std::move(why));
 }
 
 }  // namespace muldi::scene

@@ -73,11 +73,26 @@ void SolidCheck::check_probe(const Entry<Probe>& entry) {
   }
 }
 
+void SolidCheck::check_muscle_fields(const Entry<RecordedFields>& entry, const Muscle& muscle, bool electric) {
+  if (!is_meshed(muscle)) {
+    context_.add(warning_at(entry.origin, "muscle " + base::in_quotes(entry.name) +
+                                              " has no mesh, only those of model fe have: none of its fields are "
+                                              "recorded"));
+  } else if (electric && !muscle.control) {
+    error(entry.origin, "muscle " + base::in_quotes(entry.name) + " has no field: no control drives it");
+  }
+}
+
 void SolidCheck::record() {
   for (const Entry<RecordedFields>& entry : scene_.record.fields) {
-    const auto& fields = entry.value.fields;
-    if (failed(entry.origin) || std::none_of(fields.begin(), fields.end(), is_electric)) continue;
-    check_potential(entry.origin, {.name = entry.name, .origin = entry.origin});
+    if (failed(entry.origin)) continue;
+    const bool electric = std::any_of(entry.value.fields.begin(), entry.value.fields.end(), is_electric);
+    const Entry<Muscle>* muscle = scene_.muscles.find(entry.name);
+    if (scene_.solids.find(entry.name) == nullptr && muscle != nullptr) {
+      if (!failed(muscle->origin)) check_muscle_fields(entry, muscle->value, electric);
+    } else if (electric) {
+      check_potential(entry.origin, {.name = entry.name, .origin = entry.origin});
+    }
   }
   for (Entry<Probe>& entry : scene_.record.probes) {
     if (failed(entry.origin)) continue;

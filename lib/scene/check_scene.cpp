@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/text.hpp"
+#include "scene/check_optimal_control.hpp"
 #include "scene/check_solids.hpp"
 #include "scene/scene_check.hpp"
 
@@ -176,6 +177,7 @@ void check_scene(Scene& scene, const Node& root, ReadContext& context) {
   check.loads();
   check.initial();
   check.tasks();
+  if (scene.optimal_control) OptimalControlCheck(scene, check, context).all();
   SolidCheck solids(scene, check, context);
   solids.solids();
   solids.record();

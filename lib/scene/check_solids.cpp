@@ -62,25 +62,13 @@ void SolidCheck::check_formulation(const Entry<Solid>& solid, const MaterialName
   const Entry<Material>* material = scene_.materials.find(name.name);
   if (material == nullptr || context_.failed("materials." + name.name)) return;
   if (context_.failed(solid.origin.path + ".formulation")) return;
-  const Elastic& elastic = material->value.elastic;
-  const Formulation formulation = formulation_of(solid.value, material->value);
-  const auto refuse = [&](const std::string& message) {
-    if (solid.value.formulation) {
-      check_.error({"solids", solid.name, "formulation"}, message);
-    } else {
-      error(name.origin, message);
-    }
-  };
-  const std::string shown_name = base::in_quotes(name.name);
-  if (std::holds_alternative<BonetWood>(elastic.law) && formulation != Formulation::displacement) {
-    refuse("material " + shown_name +
-           " is bonet_wood, which goes with `formulation: displacement` only; the others take neo_hookean");
-  } else if (elastic.incompressible() && formulation == Formulation::displacement) {
-    refuse("displacement needs a compressible material, but Poisson's ratio of " + shown_name +
-           " is 0.5: take incompressible");
-  } else if (elastic.incompressible() && formulation == Formulation::mean_dilatation) {
-    refuse("mean_dilatation needs a compressible material, but Poisson's ratio of " + shown_name +
-           " is 0.5: take incompressible");
+  const Formulation formulation = formulation_of(solid.value.formulation, material->value);
+  const std::string why = why_unfit(formulation, material->value.elastic, name.name);
+  if (why.empty()) return;
+  if (solid.value.formulation) {
+    check_.error({"solids", solid.name, "formulation"}, why);
+  } else {
+    error(name.origin, why);
   }
 }
 

@@ -1,4 +1,6 @@
 // The table of all fields, read off the schema.
+#include "scene/documentation.hpp"
+
 #include <utility>
 
 #include "base/text.hpp"
@@ -12,6 +14,8 @@ std::string text_of(const Node& schema, std::string_view key) {
   const Node* node = schema.find(key);
   return node == nullptr ? std::string() : node->text;
 }
+
+}  // namespace
 
 std::string kind_of(const Node& schema) {
   if (const Node* reference = schema.find("$ref")) {
@@ -64,6 +68,8 @@ bool is_required(const Node& object, const std::string& key) {
   }
   return false;
 }
+
+namespace {
 
 void append(std::vector<DocumentedField>& rows, const Node& object, const std::string& path);
 

@@ -13,23 +13,26 @@
 #include "scene/bodies.hpp"
 #include "scene/controls.hpp"
 #include "scene/materials.hpp"
+#include "scene/meshed_muscle.hpp"
 
 namespace muldi::scene {
 
-/// A place in muscles::MuscleModels; `fe` is built from solids.
-enum class MuscleModel : std::size_t { fe = muscles::MuscleModels::size };
+/// All values of `model:`.
+using MuscleModels = base::Joined<muscles::MuscleModels, base::TypeList<MeshedMuscle>>;
+
+/// A place in MuscleModels.
+enum class MuscleModel : std::size_t {};
 
 template <class Model>
-inline constexpr MuscleModel muscle_model{base::index_in<Model>(muscles::MuscleModels{})};
+inline constexpr MuscleModel muscle_model{base::index_in<Model>(MuscleModels{})};
 
 template <class... Models>
-constexpr std::array<base::Word<MuscleModel>, sizeof...(Models) + 1> muscle_model_words(base::TypeList<Models...>) {
-  return {{{.word = Models::name, .value = muscle_model<Models>, .doc = Models::doc}...,
-           {.word = "fe", .value = MuscleModel::fe, .doc = "the finite element model", .later = true}}};
+constexpr std::array<base::Word<MuscleModel>, sizeof...(Models)> muscle_model_words(base::TypeList<Models...>) {
+  return {{{.word = Models::name, .value = muscle_model<Models>, .doc = Models::doc}...}};
 }
 
 inline std::span<const base::Word<MuscleModel>> words(MuscleModel) {
-  static constexpr auto all = muscle_model_words(muscles::MuscleModels{});
+  static constexpr auto all = muscle_model_words(MuscleModels{});
   return all;
 }
 
@@ -41,7 +44,7 @@ struct OptionsOf<base::TypeList<Models...>> {
   using Tuple = std::tuple<std::optional<Models>...>;
 };
 /// Those of models that are not chosen are kept, so that a scene can change its model by one word.
-using MuscleOptions = OptionsOf<muscles::MuscleModels>::Tuple;
+using MuscleOptions = OptionsOf<MuscleModels>::Tuple;
 
 enum class MuscleEnds { attached, free };
 
@@ -100,21 +103,15 @@ struct Muscle {
                 .range = positive,
                 .need = optional},
           self.layer_thickness);
-    for_each_type(muscles::MuscleModels{}, [&]<class Model>(std::type_identity<Model>) {
+    for_each_type(MuscleModels{}, [&]<class Model>(std::type_identity<Model>) {
       visit(Field{.key = Model::name, .doc = "options of the model of this name", .need = optional},
             std::get<std::optional<Model>>(self.options));
     });
-    visit(Later{.key = "fe", .doc = "the finite element model of muscles"});
   }
   friend bool operator==(const Muscle&, const Muscle&) = default;
 };
 
-/// Calls visit(options) with those of the muscle's model, if it is one of muscles::MuscleModels.
-template <class Visit>
-void visit_model(const Muscle& muscle, Visit visit) {
-  base::for_each_type(muscles::MuscleModels{}, [&]<class Model>(std::type_identity<Model>) {
-    if (muscle.model == muscle_model<Model>) visit(std::get<std::optional<Model>>(muscle.options).value_or(Model{}));
-  });
-}
+/// Whether the muscle is built from finite elements.
+inline bool is_meshed(const Muscle& muscle) { return muscle.model == muscle_model<MeshedMuscle>; }
 
 }  // namespace muldi::scene

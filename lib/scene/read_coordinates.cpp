@@ -1,5 +1,6 @@
 // Values that belong to joint coordinates: their number and dimensions follow the joint's type.
 #include <algorithm>
+#include <type_traits>
 
 #include "scene/read_values.hpp"
 
@@ -60,6 +61,23 @@ bool read_one(ReadContext& context, const Node& node, const CoordinateField&, Co
 }
 
 template <class T>
+bool read_one(ReadContext& context, const Node& node, const CoordinateField& field, Coordinate kind,
+              std::optional<T>& value) {
+  if (node.is_null()) return true;  // this coordinate is free
+  return read_value(context, node, one_of(field, kind), value.emplace());
+}
+
+bool read_one(ReadContext& context, const Node& node, const CoordinateField& field, Coordinate kind,
+              std::optional<Bounds>& value) {
+  if (node.is_null()) return true;
+  Bounds& bounds = value.emplace();
+  if (!read_value(context, node, one_of(field, kind), bounds)) return false;
+  if (!bounds[0] || !bounds[1] || *bounds[0] <= *bounds[1]) return true;
+  context.error(node.mark, "needs [low, high] with low <= high");
+  return false;
+}
+
+template <class T>
 void read_all(ReadContext& context, const Node& node, const CoordinateField& field, std::vector<T>& values) {
   const std::vector<Coordinate> kinds = coordinates_of(field);
   if (kinds.empty()) {
@@ -70,7 +88,8 @@ void read_all(ReadContext& context, const Node& node, const CoordinateField& fie
     return;
   }
   values.assign(kinds.size(), T{});
-  if (node.is_sequence()) {
+  constexpr bool are_lists = std::is_same_v<T, std::optional<Bounds>>;
+  if (node.is_sequence() && !(are_lists && kinds.size() == 1)) {
     if (node.items.size() != kinds.size()) {
       context.error(node.mark, "needs " + listed(kinds) + ", got " + shown(node));
       return;
@@ -123,10 +142,34 @@ void read_coordinates(ReadContext& context, const Node& node, const CoordinateFi
 }
 
 bool prepare(ReadContext& context, Entry<JointState>& state) { return find_coordinates(context, state); }
+bool prepare(ReadContext& context, Entry<JointPosition>& entry) { return find_coordinates(context, entry); }
+bool prepare(ReadContext& context, Entry<JointVelocity>& entry) { return find_coordinates(context, entry); }
+bool prepare(ReadContext& context, Entry<JointRange>& entry) { return find_coordinates(context, entry); }
+bool prepare(ReadContext& context, Entry<JointTrajectory>& entry) { return find_coordinates(context, entry); }
 bool prepare(ReadContext& context, Entry<JointMomentum>& momentum) { return find_coordinates(context, momentum); }
 
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, JointMomentum& value) {
   read_all(context, node, momentum_field(field.doc, value.coordinates), value.values);
+  return true;
+}
+
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, JointPosition& value) {
+  read_all(context, node, position_field(field.doc, value.coordinates), value.values);
+  return true;
+}
+
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, JointVelocity& value) {
+  read_all(context, node, velocity_field(field.doc, value.coordinates), value.values);
+  return true;
+}
+
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, JointRange& value) {
+  read_all(context, node, position_field(field.doc, value.coordinates), value.values);
+  return true;
+}
+
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, JointTrajectory& value) {
+  read_all(context, node, position_field(field.doc, value.coordinates), value.values);
   return true;
 }
 

@@ -53,16 +53,22 @@ bool read_value(ReadContext& context, const Node& node, const base::Field& field
   return false;
 }
 
-bool read_value(ReadContext& context, const Node& node, const base::Field&, RecordedPoint& value) {
-  const std::size_t dot = node.text.find('.');
-  if (!node.is_scalar() || dot == node.text.npos) {
-    context.error(node.mark, "needs body.point, got " + shown(node));
+bool read_point_name(ReadContext& context, const Mark& mark, const std::string& text, RecordedPoint& value) {
+  const std::size_t dot = text.find('.');
+  if (dot == text.npos) {
+    context.error(mark, "needs body.point, got '" + text + "'");
     return false;
   }
-  value.body = {.name = node.text.substr(0, dot), .origin = context.origin(node.mark)};
-  value.point = {.name = node.text.substr(dot + 1), .position = {}, .origin = context.origin(node.mark)};
+  value.body = {.name = text.substr(0, dot), .origin = context.origin(mark)};
+  value.point = {.name = text.substr(dot + 1), .position = {}, .origin = context.origin(mark)};
   context.references().push_back({.family = Family::body, .name = value.body.name, .origin = value.body.origin});
   return true;
+}
+
+bool read_value(ReadContext& context, const Node& node, const base::Field&, RecordedPoint& value) {
+  if (node.is_scalar()) return read_point_name(context, node.mark, node.text, value);
+  context.error(node.mark, "needs body.point, got " + shown(node));
+  return false;
 }
 
 bool read_value(ReadContext& context, const Node& node, const base::Field&, InitialFrom& value) {

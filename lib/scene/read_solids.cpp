@@ -148,7 +148,14 @@ bool prepare(ReadContext& context, Entry<SolidVelocity>& velocity) {
   return find_solid(context, velocity.name, velocity.origin);
 }
 bool prepare(ReadContext& context, Entry<RecordedFields>& fields) {
-  return find_solid(context, fields.name, fields.origin);
+  const Named<Solid>& solids = context.scene().solids;
+  const Named<Muscle>& muscles = context.scene().muscles;
+  if (solids.find(fields.name) != nullptr || muscles.find(fields.name) != nullptr) return true;
+  std::vector<std::string> known = solids.names();
+  for (std::string& name : muscles.names()) known.push_back(std::move(name));
+  context.add(error_at(fields.origin,
+                       "no solid or muscle " + base::in_quotes(fields.name) + base::did_you_mean(fields.name, known)));
+  return false;
 }
 
 bool prepare(ReadContext& context, const Node& node, Condition& value) {

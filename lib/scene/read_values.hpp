@@ -30,7 +30,7 @@ std::optional<std::size_t> read_component_name(ReadContext& context, const Node&
 bool check_name(ReadContext& context, const Mark& mark, const std::string& name);
 void report_later(ReadContext& context, const Mark& mark, std::string_view doc);
 
-// Values of scenes (read_scene_values.cpp, read_time_function.cpp, read_coordinates.cpp).
+// Values of scenes (read_scene_values.cpp, read_time_function.cpp, read_coordinates.cpp, read_optimal_control.cpp).
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, Mat3& value);
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, Inertia& value);
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, Orientation& value);
@@ -48,6 +48,19 @@ bool read_value(ReadContext& context, const Node& node, const base::Field& field
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, ProbePoint& value);
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, ProbeRegion& value);
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, ElectrodeName& value);
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, JointPosition& value);
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, JointVelocity& value);
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, JointRange& value);
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, JointTrajectory& value);
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, EndMomentum& value);
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, HeldControl& value);
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, GuessedControl& value);
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, Horizon& value);
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, Guess& value);
+/// None where it is ~, so that an override can leave the replay out.
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, std::optional<Replay>& value);
+/// `body.point`, as a value or as a key.
+bool read_point_name(ReadContext& context, const Mark& mark, const std::string& text, RecordedPoint& value);
 void read_coordinates(ReadContext& context, const Node& node, const CoordinateField& field,
                       std::vector<double>& values);
 void read_coordinates(ReadContext& context, const Node& node, const CoordinateField& field, std::vector<Drive>& values);
@@ -65,6 +78,15 @@ bool prepare(ReadContext& context, Entry<JointMomentum>& momentum);
 bool prepare(ReadContext& context, Entry<BodyVelocity>& velocity);
 bool prepare(ReadContext& context, Entry<SolidVelocity>& velocity);
 bool prepare(ReadContext& context, Entry<RecordedFields>& fields);
+bool prepare(ReadContext& context, Entry<JointPosition>& entry);
+bool prepare(ReadContext& context, Entry<JointVelocity>& entry);
+bool prepare(ReadContext& context, Entry<JointRange>& entry);
+bool prepare(ReadContext& context, Entry<JointTrajectory>& entry);
+bool prepare(ReadContext& context, Entry<BodyPose>& pose);
+bool prepare(ReadContext& context, Entry<Orientation>& orientation);
+bool prepare(ReadContext& context, Entry<HeldControl>& control);
+bool prepare(ReadContext& context, Entry<GuessedControl>& control);
+bool prepare(ReadContext& context, Entry<ControlBounds>& control);
 
 /// The same for a described value outside of a named section.
 template <class T>
@@ -75,6 +97,8 @@ bool prepare(ReadContext& context, const Node& node, Statics& value);
 bool prepare(ReadContext& context, const Node& node, Condition& value);
 bool prepare(ReadContext& context, const Node& node, Electrode& value);
 bool prepare(ReadContext& context, const Node& node, SolidAttachment& value);
+bool prepare(ReadContext& context, const Node& node, Stage& value);
+bool prepare(ReadContext& context, const Node& node, OptimalControl& value);
 
 template <std::size_t n>
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, std::array<double, n>& value) {
@@ -155,6 +179,43 @@ bool read_value(ReadContext& context, const Node& node, const base::Field&, T& v
   if (!prepare(context, node, value)) return false;
   FieldReader reader(context, node);
   T::describe(value, reader);
+  reader.finish();
+  return context.diagnostics().size() == n_errors;
+}
+
+/// Values by `body.point`.
+template <class T>
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, ByPoint<T>& value) {
+  if (!node.is_map()) {
+    context.error(node.mark, "needs a map {body.point: value}, got " + shown(node));
+    return false;
+  }
+  bool good = true;
+  for (const MapEntry& entry : node.entries) {
+    const ReadContext::Scope scope(context, entry.key);
+    auto& item = value.items.emplace_back();
+    item.origin = context.origin(entry.mark);
+    good = read_point_name(context, entry.mark, entry.key, item.point) && good;
+    good = read_value(context, entry.value, field, item.value) && good;
+  }
+  return good;
+}
+
+/// An objective: its weight alone, or {weight, options}.
+template <class Type>
+bool read_value(ReadContext& context, const Node& node, const base::Field& field, Weighted<Type>& value) {
+  if (node.is_scalar()) {
+    base::Field weight = field;
+    weight.range = base::non_negative;
+    return read_value(context, node, weight, value.weight);
+  }
+  if (!node.is_map()) {
+    context.error(node.mark, "needs a weight or a map of options, got " + shown(node));
+    return false;
+  }
+  const std::size_t n_errors = context.diagnostics().size();
+  FieldReader reader(context, node);
+  Weighted<Type>::visit_all(value, reader);
   reader.finish();
   return context.diagnostics().size() == n_errors;
 }

@@ -21,6 +21,7 @@
 #include "scene/joints.hpp"
 #include "scene/materials.hpp"
 #include "scene/muscles.hpp"
+#include "scene/optimal_control.hpp"
 #include "scene/solids.hpp"
 #include "scene/tasks.hpp"
 
@@ -45,6 +46,7 @@ struct Scene {
   Initial initial = {};
   std::optional<Statics> statics = {};
   std::optional<Dynamics> dynamics = {};
+  std::optional<OptimalControl> optimal_control = {};
   Record record = {};
   Solver solver = {};
 
@@ -77,9 +79,9 @@ struct Scene {
     visit(Field{.key = "initial", .doc = "state at t = 0", .need = optional}, self.initial);
     visit(Field{.key = "statics", .doc = "equilibria to compute", .need = optional}, self.statics);
     visit(Field{.key = "dynamics", .doc = "motion to compute", .need = optional}, self.dynamics);
+    visit(Field{.key = "optimal_control", .doc = "controls to find", .need = optional}, self.optimal_control);
     visit(Field{.key = "record", .doc = "what is recorded", .need = optional}, self.record);
     visit(Field{.key = "solver", .doc = "numerical options", .need = optional}, self.solver);
-    visit(Later{.key = "optimal_control", .doc = "optimal control"});
   }
 
   /// Equal content; positions in the input and warnings do not count.
@@ -87,8 +89,8 @@ struct Scene {
     return a.version == b.version && a.title == b.title && a.units == b.units && a.gravity == b.gravity &&
            a.materials == b.materials && a.bodies == b.bodies && a.joints == b.joints && a.controls == b.controls &&
            a.muscles == b.muscles && a.solids == b.solids && a.springs == b.springs && a.loads == b.loads &&
-           a.initial == b.initial && a.statics == b.statics && a.dynamics == b.dynamics && a.record == b.record &&
-           a.solver == b.solver;
+           a.initial == b.initial && a.statics == b.statics && a.dynamics == b.dynamics &&
+           a.optimal_control == b.optimal_control && a.record == b.record && a.solver == b.solver;
   }
 };
 

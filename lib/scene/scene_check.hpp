@@ -30,6 +30,7 @@ class SceneCheck {
 
  private:
   friend class SolidCheck;
+  friend class OptimalControlCheck;
   using Keys = std::initializer_list<std::string_view>;
 
   /// An error or warning about the entry under these keys, or the deepest that exists.
@@ -44,9 +45,12 @@ class SceneCheck {
   /// The options of its model, which are given the defaults if the scene says nothing.
   template <class Model>
   void check_muscle_model(Entry<Muscle>& muscle);
+  void check_meshed_muscle(const Entry<Muscle>& muscle, const MeshedMuscle& mesh, const Elastic& elastic);
   template <class Model>
   void check_muscle_control(const Entry<Muscle>& muscle, const Model& model);
   void check_load(const Entry<Load>& load);
+  /// That the scene holds nothing that the explicit integrator cannot move.
+  void check_explicit();
   /// Both ends of an element that acts between two points.
   void check_two_ends(std::string_view section, std::string_view name, const Attachment& from, const Attachment& to);
   /// That a control, if it exists, is of one of these quantities.

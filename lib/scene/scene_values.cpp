@@ -76,6 +76,10 @@ const Drive* Joint::drive(std::size_t i) const {
   return &drives[n_before];
 }
 
+int OptimalControl::n_steps() const {
+  return steps ? *steps : static_cast<int>(std::lround(duration.max / step.value_or(duration.max)));
+}
+
 long Dynamics::n_steps() const { return std::lround(duration / step); }
 
 std::string path_of_file(const Scene& scene, const std::string& file) {

@@ -1,52 +1,19 @@
 // JSON Schema (draft-07) of the scene format, from the descriptions that the reader follows.
 #include "scene/schema.hpp"
 
-#include <cmath>
 #include <utility>
 
 #include "base/text.hpp"
 #include "scene/orientation.hpp"
 #include "scene/read_scene.hpp"
+#include "scene/schema_nodes.hpp"
 #include "scene/time_functions.hpp"
 
 namespace muldi::scene {
 namespace {
 
-constexpr const char* name_pattern = "^[A-Za-z_][A-Za-z0-9_-]*$";
-
 template <class T>
 struct Tag {};
-
-Node text(std::string_view value) { return Node::scalar(std::string(value), true); }
-Node raw(std::string_view value) { return Node::scalar(std::string(value), false); }
-Node typed(std::string_view type) { return Node::map().with("type", text(type)); }
-Node list_of(Node items) { return typed("array").with("items", std::move(items)); }
-Node list_of(Node items, std::size_t n) {
-  const std::string count = std::to_string(n);
-  return list_of(std::move(items)).with("minItems", raw(count)).with("maxItems", raw(count));
-}
-Node any_of(std::vector<Node> options) { return Node::map().with("anyOf", Node::sequence(std::move(options))); }
-Node choices(const std::vector<std::pair<std::string_view, std::string_view>>& words) {
-  Node options = Node::sequence();
-  for (const auto& [word, doc] : words) {
-    options.items.push_back(Node::map().with("const", text(word)).with("description", text(doc)));
-  }
-  return Node::map().with("oneOf", std::move(options));
-}
-Node name_text() { return typed("string").with("pattern", text(name_pattern)); }
-
-/// A number or a text with a unit.
-Node quantity(const base::Field& field) {
-  Node node = Node::map().with("type", Node::sequence({text("number"), text("string")}));
-  const base::Range& range = field.range;
-  if (std::isfinite(range.min)) {
-    node.with(range.min_open ? "exclusiveMinimum" : "minimum", raw(base::number_text(range.min)));
-  }
-  if (std::isfinite(range.max)) {
-    node.with(range.max_open ? "exclusiveMaximum" : "maximum", raw(base::number_text(range.max)));
-  }
-  return node;
-}
 
 class SchemaVisitor;
 template <class T>
@@ -77,6 +44,19 @@ Node schema_of(Tag<RecordedFields>, const base::Field& field);
 Node schema_of(Tag<ProbePoint>, const base::Field& field);
 Node schema_of(Tag<ProbeRegion>, const base::Field& field);
 Node schema_of(Tag<ElectrodeName>, const base::Field& field);
+Node schema_of(Tag<JointPosition>, const base::Field& field);
+Node schema_of(Tag<JointVelocity>, const base::Field& field);
+Node schema_of(Tag<JointRange>, const base::Field& field);
+Node schema_of(Tag<JointTrajectory>, const base::Field& field);
+Node schema_of(Tag<EndMomentum>, const base::Field& field);
+Node schema_of(Tag<HeldControl>, const base::Field& field);
+Node schema_of(Tag<GuessedControl>, const base::Field& field);
+Node schema_of(Tag<Horizon>, const base::Field& field);
+Node schema_of(Tag<Guess>, const base::Field& field);
+template <class T>
+Node schema_of(Tag<ByPoint<T>>, const base::Field& field);
+template <class Type>
+Node schema_of(Tag<Weighted<Type>>, const base::Field& field);
 template <class... Components>
 Node schema_of(Tag<std::variant<Components...>>, const base::Field& field);
 Node schema_of(Tag<base::UnitSystem>, const base::Field& field);
@@ -271,6 +251,46 @@ Node schema_of(Tag<ProbeRegion>, const base::Field& field) {
 }
 Node schema_of(Tag<ElectrodeName>, const base::Field&) { return typed("string").with("pattern", text("\\.")); }
 
+/// A value for each coordinate: one alone, or a list.
+Node by_coordinate(const Node& one) { return any_of({one, list_of(any_of({one, typed("null")}))}); }
+Node schema_of(Tag<JointPosition>, const base::Field& field) { return by_coordinate(quantity(field)); }
+Node schema_of(Tag<JointVelocity>, const base::Field& field) { return by_coordinate(quantity(field)); }
+Node schema_of(Tag<JointRange>, const base::Field& field) { return by_coordinate(schema_of(Tag<Bounds>{}, field)); }
+Node schema_of(Tag<JointTrajectory>, const base::Field& field) {
+  return by_coordinate(schema_of(Tag<base::TimeFunction>{}, field));
+}
+Node schema_of(Tag<EndMomentum>, const base::Field& field) {
+  return any_of({Node::map().with("enum", Node::sequence({text("rest"), text("free")})),
+                 schema_of(Tag<Named<JointMomentum>>{}, field)});
+}
+Node schema_of(Tag<HeldControl>, const base::Field& field) { return quantity(field); }
+Node schema_of(Tag<GuessedControl>, const base::Field& field) { return schema_of(Tag<base::TimeFunction>{}, field); }
+Node schema_of(Tag<Horizon>, const base::Field& field) {
+  return any_of({quantity(field), schema_of<Horizon>(Tag<Horizon>{}, field)});
+}
+Node schema_of(Tag<Guess>, const base::Field& field) {
+  return any_of({Node::map().with("enum", Node::sequence({text("zero"), text("scene"), text("straight")})),
+                 form("simulate", schema_of(Tag<Named<GuessedControl>>{}, field),
+                      "forward run under functions of time by control"),
+                 form("from", typed("string"), "earlier result of optimise, of any step, finished or not"),
+                 form("random", schema_of(Tag<RandomGuesses>{}, field),
+                      "forward runs under random admissible controls; the best solution is taken")});
+}
+template <class T>
+Node schema_of(Tag<ByPoint<T>>, const base::Field& field) {
+  return typed("object")
+      .with("propertyNames", schema_of(Tag<RecordedPoint>{}, field))
+      .with("additionalProperties", schema_of(Tag<T>{}, field));
+}
+template <class Type>
+Node schema_of(Tag<Weighted<Type>>, const base::Field& field) {
+  base::Field weight = field;
+  weight.range = base::non_negative;
+  Weighted<Type> value;
+  return any_of(
+      {quantity(weight), object_of([&](SchemaVisitor& visitor) { Weighted<Type>::visit_all(value, visitor); })});
+}
+
 Node schema_of(Tag<Inertia>, const base::Field& field) {
   const Node moments = schema_of(Tag<Vec3>{}, field);
   return any_of({moments, list_of(moments, 3)});
@@ -332,13 +352,6 @@ Node schema_of(Tag<base::TimeFunction>, const base::Field&) {
 
 Node function_of_time() {
   const base::Field plain{.key = {}, .doc = {}};
-  const auto form = [](std::string_view key, Node content, std::string_view doc) {
-    content.entries.insert(content.entries.begin(), {.key = "description", .mark = {}, .value = text(doc)});
-    return typed("object")
-        .with("additionalProperties", raw("false"))
-        .with("properties", Node::map().with(std::string(key), std::move(content)))
-        .with("required", Node::sequence({text(key)}));
-  };
   const Node rows = list_of(list_of(quantity(plain), 2)).with("minItems", raw("1"));
   base::Ramp ramp;
   base::Sine sine;

@@ -12,11 +12,6 @@ std::vector<MaterialName> SolidMaterial::names() const {
   return all;
 }
 
-Formulation formulation_of(const Solid& solid, const Material& material) {
-  if (solid.formulation) return *solid.formulation;
-  return material.elastic.incompressible() ? Formulation::incompressible : Formulation::mean_dilatation;
-}
-
 bool has_field(const Solid& solid) {
   return !solid.electrodes.empty() ||
          std::any_of(solid.conditions.begin(), solid.conditions.end(),

@@ -11,6 +11,7 @@
 #include "scene/bodies.hpp"
 #include "scene/controls.hpp"
 #include "scene/entries.hpp"
+#include "scene/formulation.hpp"
 #include "scene/materials.hpp"
 
 namespace muldi::scene {
@@ -35,23 +36,6 @@ struct SolidMaterial {
 
   friend bool operator==(const SolidMaterial&, const SolidMaterial&) = default;
 };
-
-enum class Formulation { displacement, mean_dilatation, incompressible, incompressible_direct };
-
-inline std::span<const base::Word<Formulation>> words(Formulation) {
-  using enum Formulation;
-  static constexpr base::Word<Formulation> all[] = {
-      {.word = "displacement", .value = displacement, .doc = "volume energy at every Gauss point (model I; locks)"},
-      {.word = "mean_dilatation", .value = mean_dilatation, .doc = "volume energy of each cell's mean (model II)"},
-      {.word = "incompressible",
-       .value = incompressible,
-       .doc = "each cell keeps its volume exactly, with a pressure of its own (model III)"},
-      {.word = "incompressible_direct",
-       .value = incompressible_direct,
-       .doc = "the same without the intermediate dilatation (model IV)"},
-  };
-  return all;
-}
 
 /// A component of a displacement: a value, or ~ where the direction is free.
 using FreeOrDriven = std::optional<Drive>;
@@ -212,8 +196,6 @@ struct Solid {
   friend bool operator==(const Solid&, const Solid&) = default;
 };
 
-/// The formulation of the cells of a material.
-Formulation formulation_of(const Solid& solid, const Material& material);
 /// Whether any potential or charge is prescribed: without it there is no field to compute.
 bool has_field(const Solid& solid);
 /// Names of faces that the mesh will have; empty where only its file knows.

@@ -55,8 +55,7 @@ inline std::span<const base::Word<Integrator>> words(Integrator) {
       {.word = "midpoint", .value = Integrator::midpoint, .doc = "implicit variational integrator of order 2"},
       {.word = "explicit",
        .value = Integrator::explicit_scheme,
-       .doc = "the explicit integrator of solids",
-       .later = true},
+       .doc = "explicit integrator of order 2 for solids of plain displacements without viscosity"},
   };
   return all;
 }
@@ -117,7 +116,10 @@ struct Record {
   friend bool operator==(const Record&, const Record&) = default;
 };
 
-enum class LinearSolver { automatic, dense, tree, bordered };
+enum class LinearSolver { automatic, dense, tree, bordered, direct, iterative, ldlt, cg, minres, gmres };
+
+/// True for solvers of solids, which systems of bodies do not know.
+constexpr bool is_of_solids(LinearSolver linear) { return linear >= LinearSolver::iterative; }
 
 inline std::span<const base::Word<LinearSolver>> words(LinearSolver) {
   static constexpr base::Word<LinearSolver> all[] = {
@@ -127,6 +129,12 @@ inline std::span<const base::Word<LinearSolver>> words(LinearSolver) {
       {.word = "bordered",
        .value = LinearSolver::bordered,
        .doc = "the tree with a dense border for loops and far couplings"},
+      {.word = "direct", .value = LinearSolver::direct, .doc = "factorised matrices, of solids of any size too"},
+      {.word = "iterative", .value = LinearSolver::iterative, .doc = "solids by iteration, whatever their size"},
+      {.word = "ldlt", .value = LinearSolver::ldlt, .doc = "solids by a kept multifrontal factor L S L^T"},
+      {.word = "cg", .value = LinearSolver::cg, .doc = "solids by conjugate gradients, where the matrix is definite"},
+      {.word = "minres", .value = LinearSolver::minres, .doc = "solids by MINRES"},
+      {.word = "gmres", .value = LinearSolver::gmres, .doc = "solids by flexible GMRES"},
   };
   return all;
 }

@@ -32,6 +32,19 @@ Node to_node(const T& value);
 
 Node to_node(const Drive& value);
 Node to_node(const ProbePoint& value);
+Node to_node(const JointPosition& value);
+Node to_node(const JointVelocity& value);
+Node to_node(const JointRange& value);
+Node to_node(const JointTrajectory& value);
+Node to_node(const EndMomentum& value);
+Node to_node(const HeldControl& value);
+Node to_node(const GuessedControl& value);
+Node to_node(const Horizon& value);
+Node to_node(const Guess& value);
+Node to_node(const base::TimeFunction& function);
+Node to_node(const Orientation& value);
+template <class Type>
+Node to_node(const Weighted<Type>& value);
 template <class T>
 Node to_node(const std::optional<T>& value);
 template <class T, std::size_t n>
@@ -124,6 +137,13 @@ Node to_node(const Drive& value);
 
 Node to_node(const std::optional<Stops>& value);
 
+template <class T>
+Node section_node(const Named<T>& section) {
+  Node map = Node::map();
+  for (const Entry<T>& entry : section) map.with(entry.name, to_node(entry.value));
+  return map;
+}
+
 /// Visitor that appends the fields of a value to a map.
 class FieldWriter {
  public:
@@ -172,10 +192,22 @@ class FieldWriter {
   }
   template <class T>
   void append(std::string_view key, const Named<T>& section) {
-    if (section.empty()) return;
+    if (!section.empty()) map_.with(std::string(key), section_node(section));
+  }
+  template <class T>
+  void append(std::string_view key, const ByPoint<T>& values) {
+    if (values.empty()) return;
     Node map = Node::map();
-    for (const Entry<T>& entry : section) map.with(entry.name, to_node(entry.value));
+    for (const auto& item : values.items) {
+      map.with(item.point.body.name + "." + item.point.point.name, to_node(item.value));
+    }
     map_.with(std::string(key), std::move(map));
+  }
+  void append(std::string_view key, const FinalCondition& value) {
+    if (value != FinalCondition{}) map_.with(std::string(key), to_node(value));
+  }
+  void append(std::string_view key, const PathLimits& value) {
+    if (value != PathLimits{}) map_.with(std::string(key), to_node(value));
   }
 
   Node& map_;
@@ -226,6 +258,54 @@ Node to_node(const SolidMaterial& value) {
   if (value.parts.empty()) return to_node(value.whole);
   Node map = Node::map();
   for (const Entry<MaterialName>& part : value.parts) map.with(part.name, to_node(part.value));
+  return map;
+}
+
+/// One value stands alone where the reader takes it for a list otherwise.
+template <class T>
+Node coordinates_node(const std::vector<std::optional<T>>& values) {
+  if (values.size() == 1) return to_node(values.front());
+  Node list = Node::sequence();
+  for (const std::optional<T>& value : values) list.items.push_back(to_node(value));
+  return list;
+}
+Node to_node(const JointPosition& value) { return coordinates_node(value.values); }
+Node to_node(const JointVelocity& value) { return coordinates_node(value.values); }
+Node to_node(const JointRange& value) { return coordinates_node(value.values); }
+Node to_node(const JointTrajectory& value) { return coordinates_node(value.values); }
+
+Node to_node(const EndMomentum& value) {
+  if (value.kind == EndMomentum::Kind::given) return section_node(value.joints);
+  return word(value.kind == EndMomentum::Kind::rest ? "rest" : "free");
+}
+Node to_node(const HeldControl& value) { return number(value.value); }
+Node to_node(const GuessedControl& value) { return to_node(value.value); }
+Node to_node(const Horizon& value) {
+  if (!value.is_free()) return number(value.min);
+  return Node::map().with("min", number(value.min)).with("max", number(value.max));
+}
+Node to_node(const Guess& value) {
+  switch (value.kind) {
+    case Guess::Kind::zero:
+      return word("zero");
+    case Guess::Kind::scene:
+      return word("scene");
+    case Guess::Kind::straight:
+      return word("straight");
+    case Guess::Kind::simulate:
+      return Node::map().with("simulate", section_node(value.simulate));
+    case Guess::Kind::record:
+      return Node::map().with("from", Node::scalar(value.file, true));
+    case Guess::Kind::random:
+      break;
+  }
+  return Node::map().with("random", to_node(value.random));
+}
+template <class Type>
+Node to_node(const Weighted<Type>& value) {
+  Node map = Node::map();
+  FieldWriter writer(map);
+  Weighted<Type>::visit_all(value, writer);
   return map;
 }
 

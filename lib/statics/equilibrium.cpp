@@ -8,7 +8,8 @@
 namespace muldi::statics {
 namespace {
 
-constexpr double longest_increment = 0.5;  // dimensionless: rad, or sizes of the scene
+constexpr double longest_increment = 0.5;     // dimensionless: rad, or sizes of the scene
+constexpr double longest_displacement = 0.1;  // of a substructure, in its sizes: nodes close to each other move by it
 constexpr int max_halvings = 30;
 constexpr double line_search_goal = 0.9;  // |work of the residual along the increment| relative to the start
 constexpr double free_motion = 1e-11;     // smallest over largest eigenvalue of a motion without stiffness
@@ -41,14 +42,13 @@ EquilibriumSolver::EquilibriumSolver(const model::Model& model, EquilibriumOptio
       scale_(manifold_.rate_scale()),
       A_(manifold_.n_v(), manifold_.n_v()),
       B_(manifold_.n_c(), manifold_.n_v()),
-      dw_(r_),
-      dlambda_(gaps_) {
+      step_{.w = r_, .multipliers = gaps_} {
   forces_.force = q_;
   forces_.momentum = q_;
   forces_.on_rates = r_;
   if (parts_.empty()) return;
-  forces_.begin = forces_.end = dq_ = q_;
-  forces_.stage = y_ = dy_ = Eigen::VectorXd::Zero(model.n_y());
+  forces_.begin = forces_.end = step_.q = q_;
+  forces_.stage = y_ = step_.y = Eigen::VectorXd::Zero(model.n_y());
 }
 
 model::IntervalPoint EquilibriumSolver::point(const StaticState& state, std::span<const double> u) const {
@@ -72,6 +72,7 @@ void EquilibriumSolver::evaluate(const StaticState& state, std::span<const doubl
   terms_ = std::max(terms_, force_.lpNorm<Eigen::Infinity>());
   bracket_ = forces_.force;
   manifold_.add_constraint_forces(q_, -1.0, state.multipliers, bracket_);
+  parts_.gather(bracket_);
   parts_.keep_free(bracket_);
   project_bracket();
   manifold_.constraints(q_, gaps_);
@@ -85,7 +86,9 @@ void EquilibriumSolver::project_bracket() {
 
 void EquilibriumSolver::linearise(const StaticState& state, std::span<const double> u) {
   evaluate(state, u);
+  measure_residual();
   model_.tangent(point(state, u), model::TangentWeights::stiffness(), K_);
+  total_ = bracket_;
   if (!parts_.empty()) {
     singular_ = !parts_.factorise(point(state, u));
     if (!singular_) parts_.eliminate(bracket_, forces_.stage, K_);
@@ -94,29 +97,8 @@ void EquilibriumSolver::linearise(const StaticState& state, std::span<const doub
   manifold_.project_tangent(*frame_, *frame_, K_, A_);
   model_.rate_tangent(point(state, u), model::TangentWeights::stiffness(), diagonal_);
   A_.diagonal() += diagonal_;
-  manifold_.add_curvature(*frame_, bracket_, state.multipliers, A_);
+  manifold_.add_curvature(*frame_, total_, state.multipliers, A_);
   manifold_.project_constraints(*frame_, loop_basis(), B_);
-}
-
-Eigen::VectorXd EquilibriumSolver::load_rate(std::span<const double> u, std::span<const double> du) {
-  const StaticState at{.x = Eigen::VectorXd::Zero(0), .multipliers = {}};
-  Eigen::VectorXd rate = Eigen::VectorXd::Zero(manifold_.n_q());
-  Eigen::VectorXd one(manifold_.n_q());
-  Eigen::VectorXd on_rates = Eigen::VectorXd::Zero(manifold_.n_v());
-  Eigen::VectorXd projected(manifold_.n_v());
-  for (std::size_t c = 0; c < du.size(); ++c) {
-    if (du[c] == 0.0) continue;
-    one.setZero();
-    projected.setZero();
-    for (const auto& term : model_.terms) {
-      term->add_control_force(point(at, u), static_cast<int>(c), one);
-      term->add_control_force_on_rates(point(at, u), static_cast<int>(c), projected);
-    }
-    rate += du[c] * one;
-    on_rates += du[c] * projected;
-  }
-  manifold_.project(*frame_, rate, projected);
-  return projected + on_rates;
 }
 
 Stability EquilibriumSolver::stability() const {
@@ -133,32 +115,24 @@ Stability EquilibriumSolver::stability() const {
   return values[0] > 0.0 ? Stability::stable : Stability::unstable;
 }
 
-Eigen::VectorXd EquilibriumSolver::least_norm(const Eigen::VectorXd& multipliers) const {
-  return loop_basis() * (loop_basis().transpose() * multipliers);
+void EquilibriumSolver::measure_residual() {
+  const double largest = std::max(r_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>(), parts_.largest_row(bracket_));
+  residual_ = terms_ > 0.0 ? largest / terms_ : 0.0;
 }
 
-double EquilibriumSolver::increment_size() const {
-  double size = dw_.size() > 0 ? dw_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>() : 0.0;
-  if (parts_.empty()) return size;
-  const double of_parts = parts_.size_of(dq_, dy_);
-  return of_parts <= size ? size : of_parts;
+double EquilibriumSolver::length_of(const StaticMotion& motion) const {
+  double length = motion.w.size() > 0 ? motion.w.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>() : 0.0;
+  length /= longest_increment;
+  if (parts_.empty()) return length;
+  return std::max(length, parts_.size_of(motion.q, motion.y).positions / longest_displacement);
 }
 
 void EquilibriumSolver::scale_increment(double factor) {
-  dw_ *= factor;
+  step_.w *= factor;
   if (parts_.empty()) return;
-  dlambda_ *= factor;
-  dq_ *= factor;
-  dy_ *= factor;
-}
-
-void EquilibriumSolver::move(const StaticState& start, double factor, StaticState& trial) const {
-  manifold_.retract(start.x, factor * dw_, trial.x);
-  trial.multipliers = start.multipliers + factor * dlambda_;
-  if (parts_.empty()) return;
-  trial.q = start.q;
-  parts_.add_slices(factor, dq_, trial.q);
-  trial.y = start.y + factor * dy_;
+  step_.multipliers *= factor;
+  step_.q *= factor;
+  step_.y *= factor;
 }
 
 void EquilibriumSolver::newton_increment() {
@@ -185,12 +159,12 @@ void EquilibriumSolver::newton_increment() {
   Eigen::VectorXd rhs(n_v + n_c);
   rhs << scale_.cwiseProduct(r_), -g_;
   const Eigen::VectorXd solution = kkt.partialPivLu().solve(rhs);
-  dw_ = scale_.cwiseProduct(solution.head(n_v));
-  dlambda_ = loop_basis() * solution.tail(n_c);
+  step_.w = scale_.cwiseProduct(solution.head(n_v));
+  step_.multipliers = loop_basis() * solution.tail(n_c);
   if (parts_.empty()) return;
-  dq_.setZero();
-  manifold_.lift(*frame_, dw_, dq_);
-  parts_.complete(dq_, dy_);
+  step_.q.setZero();
+  manifold_.lift(*frame_, step_.w, step_.q);
+  parts_.complete(step_.q, step_.y);
 }
 
 double EquilibriumSolver::predict(StaticState& state, std::span<const double> u) {
@@ -198,45 +172,56 @@ double EquilibriumSolver::predict(StaticState& state, std::span<const double> u)
   parts_.eliminate(bracket_, forces_.stage, K_);
   manifold_.project(*frame_, bracket_, r_);
   newton_increment();
-  const double size = parts_.size_of(dq_, dy_);
+  const double size = parts_.size_of(step_.q, step_.y).largest();
   if (!(size <= longest_increment)) return size;
   StaticState moved = state;
-  move(state, 1.0, moved);
+  move(state, 1.0, step_, moved);
   state = std::move(moved);
   return size;
 }
 
 double EquilibriumSolver::distance(const StaticState& a, const StaticState& b) {
   if (parts_.empty()) return 0.0;
-  dq_ = a.q - b.q;
-  dy_.setZero();
-  return parts_.size_of(dq_, dy_);
+  step_.q = a.q - b.q;
+  step_.y.setZero();
+  return parts_.size_of(step_.q, step_.y).largest();
 }
 
 double EquilibriumSolver::line_search(const StaticState& start, StaticState& trial, std::span<const double> u,
                                       std::string& inadmissible) {
-  const double begin = r_.dot(dw_);
+  const double begin = r_.dot(step_.w);
   double factor = 1.0;
   for (int halving = 0; halving <= max_halvings; ++halving, factor *= 0.5) {
-    move(start, factor, trial);
+    move(start, factor, step_, trial);
     manifold_.configuration(trial.x, q_);
     inadmissible = model_.inadmissible(q_);
-    if (!inadmissible.empty()) continue;
+    if (!inadmissible.empty()) {
+      shortened_by_ = inadmissible;
+      continue;
+    }
     evaluate(trial, u);
     if (!(forces_.margin > 0.0)) {
       inadmissible = model_.inadmissible_anywhere(q_);
       if (inadmissible.empty()) inadmissible = "an element of a solid collapses";
+      shortened_by_ = inadmissible;
       continue;
     }
     if (!parts_.empty()) return factor;
     // On loops the multipliers change with the step, so that the work of the residual is no measure of progress there.
-    if (manifold_.n_c() > 0 || std::abs(r_.dot(dw_)) <= line_search_goal * std::abs(begin)) return factor;
+    if (manifold_.n_c() > 0 || std::abs(r_.dot(step_.w)) <= line_search_goal * std::abs(begin)) return factor;
     if (terms_ * round_off_residual >= r_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>()) return factor;
   }
   return inadmissible.empty() ? factor : 0.0;
 }
 
 EquilibriumReport EquilibriumSolver::solve(StaticState& state, std::span<const double> u) {
+  shortened_by_.clear();
+  EquilibriumReport report = iterate(state, u);
+  if (!report.converged && report.inadmissible.empty()) report.inadmissible = shortened_by_;
+  return report;
+}
+
+EquilibriumReport EquilibriumSolver::iterate(StaticState& state, std::span<const double> u) {
   EquilibriumReport report;
   StaticState at = state;
   StaticState trial = state;
@@ -253,13 +238,14 @@ EquilibriumReport EquilibriumSolver::solve(StaticState& state, std::span<const d
     linearise(at, u);
     if (singular_) return report;
     newton_increment();
-    const double size = increment_size();
+    const double size = size_of(step_);
     if (!std::isfinite(size)) return report;
-    if (size > longest_increment) scale_increment(longest_increment / size);
+    const double length = length_of(step_);
+    if (length > 1.0) scale_increment(1.0 / length);
     if (line_search(at, trial, u, report.inadmissible) == 0.0) return report;
     std::swap(at, trial);
-    const double largest = std::max(r_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>(), parts_.largest_row(bracket_));
-    report.residual = terms_ > 0.0 ? largest / terms_ : 0.0;
+    measure_residual();
+    report.residual = residual_;
     const bool stagnates = report.iterations > 3 && size > 0.5 * previous && report.residual < round_off_residual;
     if (size <= options_.tolerance || stagnates) {
       report.converged = true;
@@ -270,7 +256,7 @@ EquilibriumReport EquilibriumSolver::solve(StaticState& state, std::span<const d
   if (!report.converged) return report;
   linearise(at, u);
   report.stability = stability();
-  at.multipliers = least_norm(at.multipliers);
+  settle(at);
   state = at;
   return report;
 }

@@ -30,6 +30,14 @@ struct StaticState {
   Eigen::VectorXd y = {};       ///< stage unknowns (n_y)
 };
 
+/// A motion of all unknowns at rest.
+struct StaticMotion {
+  Eigen::VectorXd w;            ///< minimal increments (n_v)
+  Eigen::VectorXd multipliers;  ///< (n_loop_rows)
+  Eigen::VectorXd q = {};       ///< slices of substructures (n_q); empty without them
+  Eigen::VectorXd y = {};       ///< (n_y)
+};
+
 enum class Stability {
   stable,    ///< the projected tangent is positive definite on the admissible motions
   unstable,  ///< it has a negative direction
@@ -41,7 +49,7 @@ struct EquilibriumReport {
   Stability stability = Stability::stable;
   int iterations = 0;
   double residual = 0.0;     ///< relative
-  std::string inadmissible;  ///< why the terms could not be evaluated (collapsed muscle)
+  std::string inadmissible;  ///< why the terms could not be evaluated: collapsed muscle, inverted cell
 };
 
 class EquilibriumSolver {
@@ -63,16 +71,34 @@ class EquilibriumSolver {
   /// F (n_q), with the forces on the minimal rates.
   const Eigen::VectorXd& force() const { return force_; }
   const Eigen::VectorXd& scale() const { return scale_; }  ///< natural size of increments (n_v)
-  /// T^T sum_c dF/du_c du_c (n_v) at the linearised state.
+  /// True if the terms could be evaluated and the substructures factorised at the linearised state.
+  bool is_regular() const { return !singular_ && forces_.margin > 0.0; }
+  /// T^T sum_c dF/du_c du_c (n_v) at the linearised state, the response of eliminated substructures included.
   Eigen::VectorXd load_rate(std::span<const double> u, std::span<const double> du);
+  /// Once after linearise(): the plain Newton step, and the motion of the equilibrium when the controls move along
+  /// `du`.
+  void motions(std::span<const double> u, std::span<const double> du, StaticMotion& newton, StaticMotion& load);
+  /// Product of two motions in natural sizes: of rates, and the mean over the nodes of the substructures.
+  double product(const StaticMotion& a, const StaticMotion& b) const;
+  /// Largest entry of a motion in natural sizes; those of the stage unknowns and of prescribed ones count.
+  double size_of(const StaticMotion& motion) const;
+  void move(const StaticState& start, double factor, const StaticMotion& along, StaticState& trial) const;
+  /// b - a, of rates and substructures.
+  StaticMotion difference(const StaticState& a, const StaticState& b) const;
+  /// Gives a linearised equilibrium the values that are prescribed, and multipliers of least norm.
+  void settle(StaticState& state) const;
+  /// Why the terms cannot be evaluated at a state, or empty; the second looks into substructures and uses the placed
+  /// values of the linearised state.
+  std::string why_inadmissible(const StaticState& state);
+  std::string why_inadmissible_anywhere() const { return model_.inadmissible_anywhere(q_); }
+  /// Residual over its largest term, at the linearised state.
+  double relative_residual() const { return residual_; }
   Stability stability() const;
   /// For models with substructures, after linearise() at an equilibrium: moves `state` along the tangent to the
   /// controls u; returns the largest increment of the substructures.
   double predict(StaticState& state, std::span<const double> u);
   /// Largest difference of the substructures' unknowns of two states, in natural sizes; 0 without substructures.
   double distance(const StaticState& a, const StaticState& b);
-  /// Multipliers of least norm with the same constraint force at the linearised state.
-  Eigen::VectorXd least_norm(const Eigen::VectorXd& multipliers) const;
 
  private:
   model::IntervalPoint point(const StaticState& state, std::span<const double> u) const;
@@ -80,9 +106,11 @@ class EquilibriumSolver {
   /// r_ from bracket_ and the forces on the minimal rates.
   void project_bracket();
   void newton_increment();
-  double increment_size() const;
+  /// Relative to the longest that is taken whole, without its stage unknowns, in which the equations are nearly linear.
+  double length_of(const StaticMotion& motion) const;
   void scale_increment(double factor);
-  void move(const StaticState& start, double factor, StaticState& trial) const;
+  void measure_residual();
+  EquilibriumReport iterate(StaticState& state, std::span<const double> u);
   double line_search(const StaticState& start, StaticState& trial, std::span<const double> u,
                      std::string& inadmissible);
 
@@ -97,6 +125,7 @@ class EquilibriumSolver {
   Eigen::VectorXd zero_;
   Eigen::VectorXd force_;
   Eigen::VectorXd bracket_;
+  Eigen::VectorXd total_;  // the bracket before parts are eliminated: all forces on the bodies
   Eigen::VectorXd r_;
   Eigen::VectorXd diagonal_;  // derivatives of the forces on the minimal rates
   Eigen::VectorXd gaps_;      // of all loop rows
@@ -104,13 +133,12 @@ class EquilibriumSolver {
   Eigen::VectorXd scale_;
   Eigen::MatrixXd A_;
   Eigen::MatrixXd B_;
-  Eigen::VectorXd dw_;
-  Eigen::VectorXd dlambda_;
   Eigen::VectorXd y_;
-  Eigen::VectorXd dq_;  // of the substructures
-  Eigen::VectorXd dy_;
+  StaticMotion step_;
   double terms_ = 0.0;
-  bool singular_ = false;  // the matrix of a substructure
+  double residual_ = 0.0;
+  std::string shortened_by_;  // why a step was not taken whole, the last time
+  bool singular_ = false;     // the matrix of a substructure
 };
 
 }  // namespace muldi::statics

@@ -83,9 +83,7 @@ bool Sweep::follow(double load, double next, StaticState& state, EquilibriumRepo
   Eigen::VectorXd moved(model_.manifold->n_v());
   controls_at(load);
   solver_.linearise(state, u_);
-  const Eigen::VectorXd tangent = tangent_at(Eigen::VectorXd());
-  const double predicted = std::abs((next - load) / range) * tangent.head(moved.size()).norm() /
-                           std::max(std::abs(tangent[moved.size()]), 1e-300);
+  const double predicted = moved.size() > 0 ? std::abs(next - load) * response_length() : 0.0;
   const StaticState start = state;
   double predicted_parts = 0.0;
   if (!model_.substructures.empty()) {
@@ -101,6 +99,13 @@ bool Sweep::follow(double load, double next, StaticState& state, EquilibriumRepo
       solver_.distance(state, guess) > largest_correction * std::max(predicted_parts, smallest_prediction);
   const bool jumped = !resolved && (is_jump(travelled, predicted) || left);
   return report.converged && report.stability == Stability::stable && !jumped;
+}
+
+double Sweep::response_length() {
+  StaticMotion newton;
+  StaticMotion response;
+  solver_.motions(u_, direction_, newton, response);
+  return response.w.cwiseQuotient(solver_.scale()).norm();
 }
 
 SweepResult Sweep::natural(StaticState& state, const SweepCallbacks& callbacks) {
@@ -133,6 +138,7 @@ SweepResult Sweep::natural(StaticState& state, const SweepCallbacks& callbacks) 
       result.last_good = load;
       result.first_bad = next;
       result.sentence = base::format("the equilibrium is lost at a load between {:.10g} and {:.10g}", load, next);
+      if (!report.inadmissible.empty()) result.sentence += ": " + report.inadmissible;
       report = solve_at(load, state);
       record(callbacks, load, state, report);
       return result;
@@ -145,74 +151,6 @@ SweepResult Sweep::natural(StaticState& state, const SweepCallbacks& callbacks) 
   return result;
 }
 
-// ---- pseudo-arc-length (Keller): unknowns (w / scale, load / range), orthogonal to the tangent of the last point
-// --------
-
-Eigen::MatrixXd Sweep::bordered(const Eigen::VectorXd& tangent) {
-  const Eigen::Index n_v = solver_.tangent().rows();
-  const Eigen::Index n_c = solver_.loop_rows().rows();
-  const Eigen::VectorXd& scale = solver_.scale();
-  const double range = options_.to - options_.from;
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n_v + n_c + 1, n_v + n_c + 1);
-  matrix.topLeftCorner(n_v, n_v) = scale.asDiagonal() * solver_.tangent() * scale.asDiagonal();
-  matrix.block(0, n_v, n_v, 1) = -range * scale.cwiseProduct(solver_.load_rate(u_, direction_));
-  matrix.block(0, n_v + 1, n_v, n_c) = (solver_.loop_rows() * scale.asDiagonal()).transpose();
-  matrix.block(n_v, 0, n_c, n_v) = solver_.loop_rows() * scale.asDiagonal();
-  matrix.row(n_v + n_c).head(n_v + 1) = tangent.transpose();
-  return matrix;
-}
-
-Eigen::VectorXd Sweep::tangent_at(const Eigen::VectorXd& previous) {
-  const Eigen::Index n_v = solver_.tangent().rows();
-  const Eigen::Index n_c = solver_.loop_rows().rows();
-  Eigen::VectorXd border = previous;
-  if (border.size() == 0) border = Eigen::VectorXd::Unit(n_v + 1, n_v);
-  Eigen::VectorXd rhs = Eigen::VectorXd::Unit(n_v + n_c + 1, n_v + n_c);
-  const Eigen::VectorXd solution = bordered(border).partialPivLu().solve(rhs);
-  return solution.head(n_v + 1).normalized();
-}
-
-bool Sweep::corrector(StaticState& at, double& load, const Eigen::VectorXd& tangent, double arc,
-                      EquilibriumReport& report) {
-  const Eigen::VectorXd& scale = solver_.scale();
-  const Eigen::Index n_v = scale.size();
-  const Eigen::Index n_c = solver_.gaps().size();
-  const double range = options_.to - options_.from;
-  const StaticState start = at;
-  const double start_load = load;
-  Eigen::VectorXd moved(n_v);
-  model_.manifold->retract(start.x, arc * scale.cwiseProduct(tangent.head(n_v)), at.x);
-  load += arc * range * tangent[n_v];
-  for (report.iterations = 1; report.iterations <= options_.equilibrium.max_iterations; ++report.iterations) {
-    Eigen::VectorXd q(model_.manifold->n_q());
-    model_.manifold->configuration(at.x, q);
-    report.inadmissible = model_.inadmissible(q);
-    if (!report.inadmissible.empty()) return false;
-    controls_at(load);
-    solver_.linearise(at, u_);
-    model_.manifold->difference(start.x, at.x, moved);
-    const double travelled =
-        tangent.head(n_v).dot(moved.cwiseQuotient(scale)) + tangent[n_v] * (load - start_load) / range;
-    Eigen::VectorXd rhs(n_v + n_c + 1);
-    rhs << scale.cwiseProduct(solver_.residual()), -solver_.gaps(), arc - travelled;
-    const Eigen::VectorXd increment = bordered(tangent).partialPivLu().solve(rhs);
-    const double size = increment.head(n_v + 1).lpNorm<Eigen::Infinity>();
-    if (!std::isfinite(size) || size > 1.0) return false;
-    model_.manifold->retract(at.x, scale.cwiseProduct(increment.head(n_v)), at.x);
-    load += range * increment[n_v];
-    at.multipliers += solver_.loop_basis() * increment.tail(n_c);
-    if (size <= options_.equilibrium.tolerance) {
-      controls_at(load);
-      solver_.linearise(at, u_);
-      at.multipliers = solver_.least_norm(at.multipliers);
-      report.converged = true;
-      report.stability = solver_.stability();
-      return true;
-    }
-  }
-  return false;
-}
-
 SweepResult Sweep::arc_length(StaticState& state, const SweepCallbacks& callbacks) {
   SweepResult result;
   EquilibriumReport report;
@@ -221,51 +159,41 @@ SweepResult Sweep::arc_length(StaticState& state, const SweepCallbacks& callback
   const double range = options_.to - options_.from;
   const double nominal = 1.0 / options_.steps;
   const int most_points = 100 * options_.steps;
+  ArcLength curve(solver_, u_fixed_, direction_, range, options_.equilibrium);
+  CurvePoint here = curve.start(state, options_.from);
   double arc = nominal;
-  double load = options_.from;
-  Eigen::VectorXd tangent = tangent_at(Eigen::VectorXd());
   for (int point = 0; point < most_points; ++point) {
     if (callbacks.interrupted && callbacks.interrupted()) {
       result.end = SweepResult::End::interrupted;
       return result;
     }
-    StaticState trial = state;
-    double trial_load = load;
-    report = {};
-    while (!corrector(trial, trial_load, tangent, arc, report)) {
-      trial = state;
-      trial_load = load;
+    CurvePoint next;
+    while (!curve.advance(here, arc, next)) {
       arc *= 0.5;
       if (arc > bracket_width) continue;
-      result.last_good = load;
-      if (report.inadmissible.empty()) {
+      result.last_good = here.load;
+      if (next.report.inadmissible.empty()) {
         result.end = SweepResult::End::no_convergence;
-        result.sentence = base::format("the curve could not be followed beyond the load {:.10g}", load);
+        result.sentence = base::format("the curve could not be followed beyond the load {:.10g}", here.load);
       } else {
-        result.sentence = base::format("the curve ends at the load {:.10g}: {}", load, report.inadmissible);
+        result.sentence = base::format("the curve ends at the load {:.10g}: {}", here.load, next.report.inadmissible);
       }
       return result;
     }
-    const double progress = (trial_load - options_.from) / range;
-    if (progress > 1.0 || progress < 0.0) {
-      // The curve leaves the swept range: end on its border, by a corrector at fixed load.
-      const double border = progress > 1.0 ? options_.to : options_.from;
-      const Eigen::VectorXd along_load = Eigen::VectorXd::Unit(tangent.size(), tangent.size() - 1);
-      report = {};
-      if (corrector(trial, trial_load, along_load, (border - trial_load) / range, report)) {
-        state = trial;
-        load = border;
-        record(callbacks, load, state, report);
-      }
-      break;
-    }
-    state = trial;
-    load = trial_load;
-    record(callbacks, load, state, report);
-    tangent = tangent_at(tangent);
-    if (report.iterations <= 4) arc = std::min(2.0 * arc, nominal);
+    const double progress = (next.load - options_.from) / range;
+    const bool leaves = progress > 1.0 || progress < 0.0;
+    // The curve leaves the swept range: end on its border.
+    if (leaves && !curve.move_to(progress > 1.0 ? options_.to : options_.from, next)) break;
+    state = next.state;
+    controls_at(next.load);
+    record(callbacks, next.load, state, next.report);
+    CriticalPoint critical;
+    if (curve.locate(here, next, arc, critical)) result.critical.push_back(critical);
+    here = std::move(next);
+    if (leaves) break;
+    if (here.report.iterations <= 4) arc = std::min(2.0 * arc, nominal);
   }
-  result.last_good = load;
+  result.last_good = here.load;
   return result;
 }
 

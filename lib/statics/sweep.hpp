@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "statics/equilibrium.hpp"
+#include "statics/arc_length.hpp"
 
 namespace muldi::statics {
 
@@ -35,6 +35,7 @@ struct SweepResult {
   std::string sentence;
   double last_good = 0.0;  ///< largest load with a stable equilibrium (natural), bracketing the critical one
   double first_bad = 0.0;  ///< with last_good: where the equilibrium is lost
+  std::vector<CriticalPoint> critical = {};  ///< on the way of the arc length
 };
 
 struct SweepCallbacks {
@@ -60,11 +61,8 @@ class Sweep {
   bool first_equilibrium(StaticState& state, EquilibriumReport& report, SweepResult& result);
   void controls_at(double load);
   void record(const SweepCallbacks& callbacks, double load, const StaticState& state, const EquilibriumReport& report);
-  bool corrector(StaticState& at, double& load, const Eigen::VectorXd& tangent, double arc, EquilibriumReport& report);
-  /// Unit tangent of the curve at the linearised state, on the side of `previous` (of rising load if empty).
-  Eigen::VectorXd tangent_at(const Eigen::VectorXd& previous);
-  /// The linearised equations with the border row `tangent`.
-  Eigen::MatrixXd bordered(const Eigen::VectorXd& tangent);
+  /// Length of the motion of the minimal rates per unit of load, in natural sizes, at the linearised state.
+  double response_length();
 
   const model::Model& model_;
   std::vector<double> u_fixed_;

@@ -1,27 +1,45 @@
 #include "variational/node_values.hpp"
 
-namespace muldi::variational {
+#include <cmath>
 
-NodeEvaluator::NodeEvaluator(const model::Model& model, const std::string& linear)
+namespace muldi::variational {
+namespace {
+
+/// Passes with a factor that is not of this very node, at most.
+constexpr int max_passes = 40;
+/// Changes of the velocities, relative to the largest, that end the passes; beyond the second they end where they no
+/// longer fall.
+constexpr double velocity_goal = 1e-13;
+constexpr double velocity_round_off = 1e-11;
+
+}  // namespace
+
+NodeEvaluator::NodeEvaluator(const model::Model& model, const std::string& linear, const std::string& substructures)
     : model_(model),
       solver_(model.manifold->make_solver(*model.pattern, linear)),
-      parts_(model, model::Linearisation::velocity, "auto"),
+      parts_(model, model::Linearisation::velocity, substructures),
       frame_(model.manifold->make_frame()),
       M_(*model.pattern),
+      MS_(*model.pattern),
       r_(Eigen::VectorXd::Zero(model.manifold->n_v())),
+      dw_(r_),
       zero_c_(Eigen::VectorXd::Zero(model.manifold->n_c())),
       mu_(zero_c_),
       lambda_(Eigen::VectorXd::Zero(model.manifold->n_loop_rows())),
       zero_q_(Eigen::VectorXd::Zero(model.n_q())),
       bracket_(zero_q_),
+      rest_(zero_q_),
+      dv_(zero_q_),
       dy_(Eigen::VectorXd::Zero(model.n_y())),
-      zero_y_(dy_),
+      ddy_(dy_),
+      h_(dy_),
       scratch_(model.parts().size()) {
   forces_.force = zero_q_;
   forces_.momentum = zero_q_;
+  for (const auto& part : model.substructures) is_constrained_ |= part->add_velocity_rows(zero_q_, zero_q_, h_);
   if (!parts_.empty()) {
     forces_.begin = forces_.end = zero_q_;
-    forces_.stage = zero_y_;
+    forces_.stage = dy_;
   }
 }
 
@@ -31,24 +49,79 @@ void NodeEvaluator::momentum_of(const Eigen::VectorXd& q, const Eigen::VectorXd&
   p = forces_.momentum;
 }
 
-bool NodeEvaluator::solve_velocities(const State& state, NodeValues& out) {
+bool NodeEvaluator::factorise_parts(const State& state, bool anew) {
+  // Where the stepper's factor was made, which is a part of the state, so that a restart takes the same way.
+  const Eigen::VectorXd& where = state.factor.valid && !anew ? state.factor.q1 : state.q;
+  if (!parts_.factorised() || factor_q_ != where) {
+    if (!parts_.factorise({.q0 = where, .q1 = where, .q = where, .v = zero_q_, .u = {}})) return false;
+    factor_q_ = where;
+  }
+  if (is_constrained_) parts_.turn(state.q);
+  return true;
+}
+
+void NodeEvaluator::residual_of(const State& state, const NodeValues& at) {
   const model::Manifold& manifold = *model_.manifold;
   bracket_ = state.p;
-  if (!parts_.empty()) {
-    if (!parts_.factorise({.q0 = state.q, .q1 = state.q, .q = state.q, .v = zero_q_, .u = {}})) return false;
-    parts_.keep_free(bracket_);
-    parts_.eliminate(bracket_, zero_y_, M_);
+  h_.setZero();
+  if (is_constrained_ && !at.v.isZero(0.0)) {
+    model_.forces({.q0 = state.q, .q1 = state.q, .q = state.q, .v = at.v, .u = {}}, forces_);
+    bracket_ -= forces_.momentum;
+    rest_.setZero();
+    model_.each_part([&](const model::Substructure& part, std::size_t) {
+      part.add_multiplier_impulse(state.q, dy_, rest_);
+      part.add_velocity_rows(state.q, at.v, h_);
+    });
+    bracket_ -= rest_;
+    manifold.add_constraint_forces(state.q, -1.0, lambda_, bracket_);
   }
+  parts_.gather(bracket_);
+  parts_.keep_free(bracket_);
+}
+
+double NodeEvaluator::improve(NodeValues& out) {
+  const model::Manifold& manifold = *model_.manifold;
+  dv_.setZero();
   if (manifold.n_v() > 0) {
-    if (!solver_->factorise(*frame_, *frame_, M_)) return false;
     manifold.project(*frame_, bracket_, r_);
-    solver_->solve(r_, zero_c_, out.rate, mu_);
-    lambda_.noalias() = manifold.loop_basis(*frame_) * mu_;
+    solver_->solve(r_, zero_c_, dw_, mu_);
+    lambda_.noalias() += manifold.loop_basis(*frame_) * mu_;
+    manifold.lift(*frame_, dw_, dv_);
+    out.rate += dw_;
   }
-  out.v.setZero();
-  manifold.lift(*frame_, out.rate, out.v);
-  parts_.complete(out.v, dy_);
-  return true;
+  parts_.complete(dv_, ddy_);
+  out.v += dv_;
+  dy_ += ddy_;
+  const double size = out.v.lpNorm<Eigen::Infinity>();
+  return size > 0.0 ? dv_.lpNorm<Eigen::Infinity>() / size : 0.0;
+}
+
+bool NodeEvaluator::solve_velocities(const State& state, NodeValues& out) {
+  for (const bool anew : {false, true}) {
+    if (!parts_.empty() && !factorise_parts(state, anew)) return false;
+    out.rate.setZero();
+    out.v.setZero();
+    dy_.setZero();
+    lambda_.setZero();
+    double previous = 0.0;
+    for (int pass = 0; pass < max_passes; ++pass) {
+      residual_of(state, out);
+      if (pass > 0) {
+        parts_.respond(bracket_, h_);
+      } else {
+        MS_ = M_;
+        parts_.eliminate(bracket_, h_, MS_);
+        if (model_.manifold->n_v() > 0 && !solver_->factorise(*frame_, *frame_, MS_)) return false;
+      }
+      const double change = improve(out);
+      if (!is_constrained_ || change <= velocity_goal) return true;
+      if (pass > 2 && change > 0.5 * previous && change < velocity_round_off) return true;
+      if (!std::isfinite(change)) break;
+      previous = change;
+    }
+    if (factor_q_ == state.q) break;
+  }
+  return std::isfinite(out.v.sum());
 }
 
 bool NodeEvaluator::evaluate(const State& state, std::span<const double> u_before, std::span<const double> u_after,

@@ -24,7 +24,7 @@ struct NodeValues {
 class NodeEvaluator {
  public:
   /// `linear`: solver kind, as StepOptions::linear.
-  NodeEvaluator(const model::Model& model, const std::string& linear);
+  NodeEvaluator(const model::Model& model, const std::string& linear, const std::string& substructures = "auto");
 
   /// Velocities, energies and momenta of `state`; `u_before` and `u_after`: controls of the intervals on both sides.
   /// False if the mass matrix is singular on the free motions.
@@ -42,22 +42,35 @@ class NodeEvaluator {
   void momentum_of(const Eigen::VectorXd& q, const Eigen::VectorXd& v, std::span<const double> u, Eigen::VectorXd& p);
 
  private:
+  /// M v + constraint impulses = p. Constraints inside parts are solved for by passes with exact residuals and a factor
+  /// of an earlier node; without such constraints the first pass is exact.
   bool solve_velocities(const State& state, NodeValues& out);
+  bool factorise_parts(const State& state, bool anew);
+  void residual_of(const State& state, const NodeValues& at);
+  /// Adds the solution for the residual; returns its size relative to that of the velocities.
+  double improve(NodeValues& out);
 
   const model::Model& model_;
   std::unique_ptr<model::ProjectedSolver> solver_;
   model::SubstructureSet parts_;
   std::unique_ptr<model::Frame> frame_;
   math::BlockMatrix M_;
+  math::BlockMatrix MS_;  // with what eliminated parts leave
   model::IntervalForces forces_;
   Eigen::VectorXd r_;
+  Eigen::VectorXd dw_;
   Eigen::VectorXd zero_c_;
   Eigen::VectorXd mu_;
   Eigen::VectorXd lambda_;
   Eigen::VectorXd zero_q_;
   Eigen::VectorXd bracket_;
+  Eigen::VectorXd rest_;
+  Eigen::VectorXd dv_;
   Eigen::VectorXd dy_;
-  Eigen::VectorXd zero_y_;
+  Eigen::VectorXd ddy_;
+  Eigen::VectorXd h_;
+  Eigen::VectorXd factor_q_;  // where the parts were factorised
+  bool is_constrained_ = false;
   std::vector<model::Energy> scratch_;
 };
 

@@ -24,6 +24,10 @@ std::string name_of(Status status) {
       return "step_too_large";
     case Status::rank_change:
       return "rank_change";
+    case Status::infeasible:
+      return "infeasible";
+    case Status::iteration_limit:
+      return "iteration_limit";
     case Status::write_error:
       return "write_error";
   }

@@ -28,6 +28,7 @@ struct State {
   Eigen::VectorXd y = {};        ///< stage unknowns of the last interval (n_y), the predictor
   Eigen::VectorXd advance = {};  ///< last increment of the substructures' positions (n_q)
   FactorPoint factor = {};
+  int exact_steps = 0;  ///< steps to come that solve for substructures with exact derivatives from the start
 };
 
 /// How a solver ended; the names are those of the result file (scene format, section 4).
@@ -42,6 +43,8 @@ enum class Status {
   breakdown,
   step_too_large,
   rank_change,
+  infeasible,       ///< of optimal control, as the next
+  iteration_limit,  ///<
   write_error,
 };
 

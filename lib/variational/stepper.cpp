@@ -15,10 +15,15 @@ constexpr int max_halvings = 12;
 constexpr double round_off_residual = 1e-12;
 /// A kept factor is made anew where an iteration reduces the increment by less than this.
 constexpr double slow_rate = 0.4;
+/// Accuracy of increments with exact derivatives: that of their own size, between these.
+constexpr double coarsest_accuracy = 1e-2;
+constexpr double finest_accuracy = 1e-6;
+/// Steps that use them from the start after one that needed them.
+constexpr int exact_for_steps = 16;
 /// Violation of the constraints inside substructures that one more iteration takes to round-off.
 constexpr double violation_goal = 1e-12;
-/// Part of a step by which positions are prescribed before its end: where a held control jumps, its old value counts.
-constexpr double before_end = 1e-9;
+/// Violation that is round-off already.
+constexpr double violation_round_off = 2e-13;
 
 }  // namespace
 
@@ -75,6 +80,7 @@ void Stepper::evaluate(const State& state, std::span<const double> u) {
   q_mid_ = 0.5 * (state.q + q_);
   v_ = (q_ - state.q) / dt_;
   model_.forces(point(state, u), forces_);
+  evaluated_ = true;
 }
 
 void Stepper::project_bracket() {
@@ -91,6 +97,7 @@ double Stepper::residual_of(const State& state) {
   const Eigen::MatrixXd& Z = manifold_.loop_basis(*frame_n_);
   lambda_.noalias() = Z * mu_;
   manifold_.add_constraint_forces(state.q, -1.0, lambda_, bracket_);
+  parts_.gather(bracket_);
   project_bracket();
   manifold_.constraints(q_, gaps_);
   g_.noalias() = Z.transpose() * gaps_;
@@ -100,6 +107,7 @@ double Stepper::residual_of(const State& state) {
 }
 
 void Stepper::move() {
+  evaluated_ = false;
   manifold_.retract(x_before_, dw_, x_);
   manifold_.configuration(x_, q_);
   mu_ = mu_before_ + dmu_;
@@ -169,6 +177,8 @@ double Stepper::solve(const State& state, std::span<const double> u, StepReport&
   }
   if (!parts_.empty()) {
     if ((wants_factor_ || !parts_.factorised()) && !factorise_parts(at, report)) return failed;
+    parts_.turn(q_);
+    if (exact_) parts_.linearise(at, accuracy_);
     parts_.eliminate(bracket_, forces_.stage, K_);
     project_bracket();
   }
@@ -186,8 +196,11 @@ double Stepper::solve(const State& state, std::span<const double> u, StepReport&
     dq_.setZero();
     manifold_.lift(*frame_k_, dw_, dq_);
     parts_.complete(dq_, dy_);
-    const double of_parts = parts_.size_of(dq_, dy_);
-    if (!(of_parts <= size)) size = of_parts;
+    const model::IncrementSize of_parts = parts_.size_of(dq_, dy_);
+    length_ = std::max(size, of_parts.positions);
+    if (!(of_parts.largest() <= size)) size = of_parts.largest();
+  } else {
+    length_ = size;
   }
   if (!std::isfinite(size)) report.sentence = "the Newton increment is not finite";
   return size;
@@ -195,31 +208,41 @@ double Stepper::solve(const State& state, std::span<const double> u, StepReport&
 
 bool Stepper::newton(const State& state, std::span<const double> u, bool keep_factors, StepReport& report) {
   double previous = 0.0;
-  int since_factor = 0;
+  int since_change = 0;  // iterations with the same factor, or with the exact derivative
+  bool is_new = false;   // the factor is of this step
   halvings_ = max_halvings;
+  exact_ = !keep_factors || state.exact_steps > 0;
   for (int iteration = 1; iteration <= options_.max_iterations; ++iteration) {
     evaluate(state, u);
     while (!(forces_.margin > 0.0)) {
       if (!retreat(report)) return false;
       evaluate(state, u);
     }
+    if (iteration > 1 && previous <= options_.tolerance && forces_.violation <= violation_round_off) return true;
     report.residual = residual_of(state);
     ++report.iterations;
     const int factorisations = report.factorisations;
     wants_factor_ |= !keep_factors;
+    accuracy_ = iteration == 1 ? coarsest_accuracy : std::clamp(previous, finest_accuracy, coarsest_accuracy);
     const double size = solve(state, u, report);
     if (!std::isfinite(size)) return false;
-    since_factor = report.factorisations > factorisations ? 1 : since_factor + 1;
+    since_change = report.factorisations > factorisations ? 1 : since_change + 1;
+    is_new |= report.factorisations > factorisations;
     const bool stagnates = iteration > 3 && size > 0.5 * previous && report.residual < round_off_residual;
-    const bool slow = since_factor > 1 && size > slow_rate * previous && size > options_.tolerance;
+    const bool slow = since_change > 1 && size > slow_rate * previous && size > options_.tolerance;
     if (!parts_.empty() && slow && !stagnates) {
-      wants_factor_ = true;
-      if (size > previous) {
+      // What a new factor does not mend is not in its matrix.
+      const bool use_exact = !exact_ && is_new && since_change == 2;
+      exact_ |= use_exact;
+      wants_factor_ = !use_exact;
+      if (use_exact) since_change = 0;
+      if (size > previous && use_exact) continue;
+      if (size > previous && !exact_) {
         report.sentence = "the increments grow";
         return false;
       }
     }
-    if (size > longest_increment) scale_increment(longest_increment / size);
+    if (length_ > longest_increment) scale_increment(longest_increment / length_);
     apply_increment(state, report);
     if (!report.sentence.empty()) return false;
     if ((size <= options_.tolerance && forces_.violation <= violation_goal) || stagnates) return true;
@@ -243,41 +266,6 @@ bool Stepper::choose_loop_rows(StepReport& report) {
   }
   report.status = Status::rank_change;
   return false;
-}
-
-void Stepper::start_at(const State& state, bool extrapolate, std::span<const double> u) {
-  if (extrapolate) {
-    manifold_.retract(state.x, state.increment, x_);
-    mu_.noalias() =
-        (state.step == 0 ? 0.5 * dt_ : dt_) * manifold_.loop_basis(*frame_n_).transpose() * state.multipliers;
-  } else {
-    x_ = state.x;
-    mu_.setZero();
-  }
-  manifold_.configuration(x_, q_);
-  if (parts_.empty()) return;
-  parts_.copy_slices(state.q, q_);
-  if (extrapolate) parts_.add_slices(1.0, state.advance, q_);
-  y_ = state.y;
-  if (parts_.moves()) model_.evaluate_controls(state.t + (1.0 - before_end) * dt_, u_end_);
-  parts_.place({.u = u, .u_end = u_end_}, q_, y_);
-  // Where controls change the potentials jump with them: they are settled before the first matrix is made.
-  if (state.step > 0) model_.evaluate_controls(state.t - 0.5 * dt_, u_last_);
-  if (state.step > 0 && std::equal(u.begin(), u.end(), u_last_.begin())) return;
-  q_mid_ = 0.5 * (state.q + q_);
-  v_ = (q_ - state.q) / dt_;
-  parts_.settle_stage(point(state, u), y_);
-}
-
-void Stepper::restore_factors(const State& state, std::span<const double> u) {
-  if (parts_.empty() || parts_.factorised() || !state.factor.valid) return;
-  factor_ = state.factor;
-  y_ = factor_.y;
-  q_mid_ = 0.5 * (factor_.q0 + factor_.q1);
-  v_ = (factor_.q1 - factor_.q0) / dt_;
-  const model::IntervalPoint at{
-      .q0 = factor_.q0, .q1 = factor_.q1, .q = q_mid_, .v = v_, .u = u, .dt = dt_, .y = &y_, .first = factor_.first};
-  wants_factor_ = !parts_.factorise(at);
 }
 
 bool Stepper::attempt(const State& state, std::span<const double> u, Attempt how, StepReport& report) {
@@ -338,7 +326,7 @@ void Stepper::carry_residual() {
 }
 
 void Stepper::finish(State& state, std::span<const double> u, StepReport& report) {
-  evaluate(state, u);
+  if (!evaluated_) evaluate(state, u);
   report.rotation = manifold_.largest_rotation(state.q, q_);
   if (report.rotation > options_.refuse_rotation) {
     report.status = Status::step_too_large;
@@ -355,6 +343,7 @@ void Stepper::finish(State& state, std::span<const double> u, StepReport& report
   constraint_force_ = -(state.p + 0.5 * dt_ * forces_.force - forces_.momentum) / weight;
   if (forces_.begin.size() > 0) constraint_force_ -= forces_.begin / weight;
   manifold_.add_forces_on_rates(*frame_n_, -0.5 * dt_ / weight, forces_.on_rates, constraint_force_);
+  parts_.gather(constraint_force_);
   report.violation = forces_.violation;
   report.work = model_.work(point(state, u));
   manifold_.difference(state.x, x_, state.increment);
@@ -370,6 +359,8 @@ void Stepper::finish(State& state, std::span<const double> u, StepReport& report
     state.advance = q_ - state.q;
     state.y = y_;
     if (report.factorisations > 0 || !state.factor.valid) state.factor = factor_;
+    // Tried without again now and then: the exact derivative costs many products.
+    state.exact_steps = exact_ && state.exact_steps == 0 ? exact_for_steps : std::max(0, state.exact_steps - 1);
   }
   state.x = x_;
   state.q = q_;

@@ -10,14 +10,14 @@
 /// Z mu = dt lambda_n (dt/2 at the first node). Some terms add to the bracket what depends on q_n itself and to p_{n+1}
 /// what depends on q_{n+1}; substructures add stage rows. Newton's matrix is exact for bodies and muscles; that of
 /// substructures is factorised once and kept while the increments keep falling (performance: a lagged factor with exact
-/// residuals).
+/// residuals); where they do not fall with a new factor either, its exact derivative is used.
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "model/model.hpp"
 #include "model/substructure_set.hpp"
-#include "variational/state.hpp"
+#include "variational/step_method.hpp"
 
 namespace muldi::variational {
 
@@ -32,35 +32,19 @@ struct StepOptions {
   double loop_limit = 1e-6;            ///< below it, or with a redundant pivot above it, the rank is another
 };
 
-/// What one step reports.
-struct StepReport {
-  Status status = Status::running;
-  std::string sentence;  ///< why it failed
-  int iterations = 0;
-  int factorisations = 0;
-  double residual = 0.0;  ///< largest projected residual relative to the largest term of it
-  model::IntervalWork work;
-  double rotation = 0.0;         ///< largest turn of a body in the step (rad)
-  double loop_regularity = 1.0;  ///< relative to that at the start; 0 where the step passed a change of rank
-  double violation = 0.0;        ///< of the constraints inside substructures at the end, dimensionless
-};
-
-class Stepper {
+class Stepper final : public StepMethod {
  public:
   /// The model must outlive the stepper.
   Stepper(const model::Model& model, double dt, StepOptions options);
 
-  /// Moves `state` one step on with the controls `u` at the middle of the interval; on failure `state` is unchanged.
   /// Allocates nothing after the first call.
-  StepReport advance(State& state, std::span<const double> u);
+  StepReport advance(State& state, std::span<const double> u) override;
 
   double dt() const { return dt_; }
   const StepOptions& options() const { return options_; }
   std::string solver_name() const { return solver_->name(); }
 
-  /// -G^T lambda (n_q) at the node that the last step left, all constraints; the momentum form gives it as the part of
-  /// the equation of motion that the free motions do not see.
-  const Eigen::VectorXd& constraint_force() const { return constraint_force_; }
+  const Eigen::VectorXd& constraint_force() const override { return constraint_force_; }
 
  private:
   /// From where and with which factors of the substructures a step is tried.
@@ -136,6 +120,10 @@ class Stepper {
   std::vector<double> u_end_;
   FactorPoint factor_;
   bool wants_factor_ = true;
+  bool exact_ = false;      // increments of substructures by their exact derivatives, not by their factors alone
+  double accuracy_ = 0.0;   // of such increments
+  double length_ = 0.0;     // of the increment, its stage unknowns left out: the equations are nearly linear in these
+  bool evaluated_ = false;  // forces_ are those of the iterate
   int halvings_ = 0;
   double reference_regularity_ = 1.0;
 };

@@ -2,13 +2,24 @@
 
 #include <algorithm>
 
+#include "variational/explicit_stepper.hpp"
+
 namespace muldi::variational {
+
+namespace {
+
+std::unique_ptr<StepMethod> make_method(const model::Model& model, const LoopOptions& options) {
+  if (options.integrator == Integrator::midpoint) return std::make_unique<Stepper>(model, options.dt, options.step);
+  return std::make_unique<ExplicitStepper>(model, options.dt);
+}
+
+}  // namespace
 
 TimeLoop::TimeLoop(const model::Model& model, LoopOptions options)
     : model_(model),
       options_(std::move(options)),
-      stepper_(model, options_.dt, options_.step),
-      nodes_(model, options_.step.linear),
+      stepper_(make_method(model, options_)),
+      nodes_(model, options_.step.linear, options_.step.substructures),
       u_before_(model.controls.size()),
       u_(model.controls.size()) {}
 
@@ -47,13 +58,13 @@ LoopResult TimeLoop::run(State& state, Ledger& ledger, StepReport& last, const L
     double jump = 0.0;
     if (u_ != u_before_) jump = nodes_.electric(state, u_) - nodes_.electric(state, u_before_);
     before_ = state;
-    const StepReport report = stepper_.advance(state, u_);
+    const StepReport report = stepper_->advance(state, u_);
     if (report.status != Status::running) {
       result.status = report.status;
       result.sentence = report.sentence;
       break;
     }
-    if (recorded) record(callbacks, before_, ledger, last, {stepper_.constraint_force(), state.multipliers, state.y});
+    if (recorded) record(callbacks, before_, ledger, last, {stepper_->constraint_force(), state.multipliers, state.y});
     last = report;
     ledger.dissipated += report.work.dissipated;
     ledger.external += report.work.external;
@@ -106,6 +117,7 @@ void TimeLoop::record_end(const LoopCallbacks& callbacks, const State& state, Le
   for (const auto& part : model_.substructures) {
     part->add_multiplier_impulse(state.q, nodes_.stage_impulse(), end_force_);
   }
+  for (const auto& part : model_.substructures) part->gather(end_force_);
   end_force_ /= half;
   end_multipliers_ = nodes_.loop_impulse() / half;
   end_stage_ = nodes_.stage_impulse() / half;

@@ -39,11 +39,14 @@ struct NodeRecord {
   bool last = false;                        ///< no step follows
 };
 
+enum class Integrator { midpoint, explicit_scheme };
+
 struct LoopOptions {
   double dt = 0.0;
   long steps = 0;  ///< nodes 0 .. steps
   long record_every = 1;
   StepOptions step = {};
+  Integrator integrator = Integrator::midpoint;
 };
 
 struct LoopCallbacks {
@@ -63,6 +66,7 @@ struct LoopResult {
 
 class TimeLoop {
  public:
+  /// Makes the solvers; InputError where they do not fit into this machine.
   TimeLoop(const model::Model& model, LoopOptions options);
 
   /// Goes on from `state` and `ledger`, with `last` the report of the step that ended there (default at t = 0), and
@@ -84,7 +88,7 @@ class TimeLoop {
 
   const model::Model& model_;
   LoopOptions options_;
-  Stepper stepper_;
+  std::unique_ptr<StepMethod> stepper_;
   NodeEvaluator nodes_;
   NodeValues values_;
   State before_;

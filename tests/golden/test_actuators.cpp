@@ -116,6 +116,8 @@ TEST(PullIn, ArcLengthFollowsTheClosedFormOverTheLimitPoint) {
     unstable_points += lambda < critical_stretch;
   }
   EXPECT_GT(unstable_points, 100);
+  EXPECT_NEAR(run.attribute("statics", "limit_load"), critical_field, 1e-8 * critical_field);
+  EXPECT_EQ(run.warnings(), std::vector<std::string>{"statics: the load turns at the limit point 58009.6395"});
   // The largest point lies within half a step of the limit point, where the load falls with the square.
   EXPECT_LE(load.maxCoeff(), critical_field * (1.0 + 1e-11));
   EXPECT_GT(load.maxCoeff(), critical_field * (1.0 - 1e-5));

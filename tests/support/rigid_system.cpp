@@ -113,7 +113,7 @@ RigidSystem RigidSystem::moved(const multibody::Pose& motion) const {
   return result;
 }
 
-std::unique_ptr<model::Model> make_model(const RigidSystem& system) {
+std::unique_ptr<model::Model> unbound_model(const RigidSystem& system) {
   auto model = std::make_unique<model::Model>();
   multibody::KinematicTree tree = multibody::build_tree(system.n_bodies(), system.joints);
   model->node_sizes.assign(static_cast<std::size_t>(system.n_bodies()), 12);
@@ -138,6 +138,11 @@ std::unique_ptr<model::Model> make_model(const RigidSystem& system) {
   }
   model->manifold =
       std::make_unique<multibody::TreeManifold>(std::move(tree), system.poses, std::move(plain), system.length);
+  return model;
+}
+
+std::unique_ptr<model::Model> make_model(const RigidSystem& system) {
+  auto model = unbound_model(system);
   model->bind();
   return model;
 }

@@ -80,6 +80,8 @@ struct RigidSystem {
 /// The model of a system: bodies, forces of tree joints, of cut joints, loads, muscles, springs, actuators, in this
 /// order.
 std::unique_ptr<model::Model> make_model(const RigidSystem& system);
+/// The same before Model::bind, for parts to add.
+std::unique_ptr<model::Model> unbound_model(const RigidSystem& system);
 const multibody::TreeManifold& manifold_of(const model::Model& model);
 
 /// The state at t = 0 with coordinates x and minimal velocities w.

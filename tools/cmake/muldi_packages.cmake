@@ -48,6 +48,11 @@ find_path(METIS_INCLUDE_DIR metis.h REQUIRED)
 add_library(metis::metis INTERFACE IMPORTED)
 set_target_properties(metis::metis PROPERTIES INTERFACE_INCLUDE_DIRECTORIES ${METIS_INCLUDE_DIR})
 target_link_libraries(metis::metis INTERFACE ${CMAKE_DL_LIBS})
+# Ipopt is linked by a module of ours that is opened at run time. Its headers ask for this definition.
+pkg_check_modules(ipopt_package REQUIRED IMPORTED_TARGET ipopt)
+add_library(ipopt::ipopt INTERFACE IMPORTED)
+set_target_properties(ipopt::ipopt PROPERTIES
+  INTERFACE_COMPILE_DEFINITIONS HAVE_CSTDDEF INTERFACE_LINK_LIBRARIES PkgConfig::ipopt_package)
 if(MULDI_TESTS)
   find_package(GTest REQUIRED)
 endif()

@@ -8,10 +8,15 @@
 
 namespace muldi::fem {
 
-/// Calls use(N, da) at the four Gauss points of a face: shape functions, and the area vector (outward) that the point
-/// stands for, at positions x (three a node).
+/// A Gauss point of a face: shape functions, their derivatives, and the tangents that these give.
+struct FacePoint {
+  Eigen::Vector4d N, N_xi, N_eta;
+  Eigen::Vector3d along, across;
+};
+
+/// Calls use(point) at the four Gauss points of a face, at positions x (three a node).
 template <class Use>
-void each_face_point(const std::array<int, 4>& face, const double* x, const Use& use) {
+void each_face_tangent(const std::array<int, 4>& face, const double* x, const Use& use) {
   Eigen::Matrix<double, 3, 4> corner;
   for (int a = 0; a < 4; ++a) {
     corner.col(a) =
@@ -20,14 +25,23 @@ void each_face_point(const std::array<int, 4>& face, const double* x, const Use&
   const double gauss = 1.0 / std::sqrt(3.0);
   for (const double xi : {-gauss, gauss}) {
     for (const double eta : {-gauss, gauss}) {
-      const Eigen::Vector4d N(0.25 * (1 - xi) * (1 - eta), 0.25 * (1 + xi) * (1 - eta), 0.25 * (1 + xi) * (1 + eta),
-                              0.25 * (1 - xi) * (1 + eta));
-      const Eigen::Vector4d N_xi(-0.25 * (1 - eta), 0.25 * (1 - eta), 0.25 * (1 + eta), -0.25 * (1 + eta));
-      const Eigen::Vector4d N_eta(-0.25 * (1 - xi), -0.25 * (1 + xi), 0.25 * (1 + xi), 0.25 * (1 - xi));
-      const Eigen::Vector3d along = corner * N_xi;
-      use(N, Eigen::Vector3d(along.cross(Eigen::Vector3d(corner * N_eta))));
+      FacePoint at;
+      at.N << 0.25 * (1 - xi) * (1 - eta), 0.25 * (1 + xi) * (1 - eta), 0.25 * (1 + xi) * (1 + eta),
+          0.25 * (1 - xi) * (1 + eta);
+      at.N_xi << -0.25 * (1 - eta), 0.25 * (1 - eta), 0.25 * (1 + eta), -0.25 * (1 + eta);
+      at.N_eta << -0.25 * (1 - xi), -0.25 * (1 + xi), 0.25 * (1 + xi), 0.25 * (1 - xi);
+      at.along = corner * at.N_xi;
+      at.across = corner * at.N_eta;
+      use(at);
     }
   }
+}
+
+/// Calls use(N, da) at the four Gauss points of a face: shape functions, and the area vector (outward) that the point
+/// stands for, at positions x (three a node).
+template <class Use>
+void each_face_point(const std::array<int, 4>& face, const double* x, const Use& use) {
+  each_face_tangent(face, x, [&use](const FacePoint& at) { use(at.N, Eigen::Vector3d(at.along.cross(at.across))); });
 }
 
 /// Of the corners of a face, counterclockwise; X: positions (3 n_nodes).

@@ -2,14 +2,20 @@
 
 #include <cmath>
 
+#include "math/vector_loops.hpp"
+
 namespace muldi::fem {
 namespace {
 
+/// Potentials up to which a factor is kept.
+constexpr int direct_potentials = 30000;
 constexpr int max_newton = 20;
 constexpr int max_cg = 60;
 constexpr int cg_with_fresh_factor = 12;  // beyond, the factor is made anew
 constexpr double cg_reduction = 1e-13;
-constexpr double newton_tolerance = 1e-13;  // of the potentials
+constexpr double cg_reduction_of_large = 1e-5;  // with a kept matrix
+constexpr int slow_newton = 8;                  // iterations beyond which it is made anew
+constexpr double newton_tolerance = 1e-13;      // of the potentials
 
 /// Every position is held.
 math::NodeMask potential_mask(const math::NodeMask& mask) {
@@ -27,27 +33,61 @@ std::vector<std::vector<int>> nodes_of(const std::vector<FloatingElectrode>& ele
 
 }  // namespace
 
+std::unique_ptr<PotentialSolver::Factor> PotentialSolver::make_factor(const ElementSet& elements,
+                                                                      const SolidUnknowns& unknowns,
+                                                                      const SolidDescription& data) {
+  math::SymmetricBlockPattern pattern(elements.n_nodes(), 4, elements.cells());
+  std::vector<std::int32_t> slots = elements.slots_in(pattern);
+  return std::make_unique<Factor>(std::move(pattern), std::move(slots), potential_mask(unknowns.mask()),
+                                  nodes_of(data.floating));
+}
+
 PotentialSolver::PotentialSolver(const ElementSet& elements, const SolidUnknowns& unknowns,
                                  const SolidDescription& data)
     : elements_(elements),
       unknowns_(unknowns),
       data_(data),
-      pattern_(elements.n_nodes(), 4, elements.cells()),
-      slots_(elements.slots_in(pattern_)),
-      factor_(pattern_, potential_mask(unknowns.mask()), nodes_of(data.floating)) {
+      factor_(unknowns.n_free_potentials() <= direct_potentials || !data.floating.empty()
+                  ? make_factor(elements, unknowns, data)
+                  : nullptr) {
   for (Eigen::VectorXd* v : {&r_, &z_, &d_, &Ad_, &step_}) *v = Eigen::VectorXd::Zero(elements.n_nodes());
-  full_ = Eigen::VectorXd::Zero(4 * elements.n_nodes());
+  if (!is_large()) full_ = Eigen::VectorXd::Zero(4 * elements.n_nodes());
   factor_x_ = Eigen::VectorXd::Zero(3 * elements.n_nodes());
   factor_phi_ = step_;
 }
 
 void PotentialSolver::factorise(const Eigen::Ref<const Eigen::VectorXd>& x,
                                 const Eigen::Ref<const Eigen::VectorXd>& phi) {
-  factor_.matrix().set_zero();
-  elements_.tangent({.x = x.data(), .phi = phi.data()}, {.stiffness = 0.0, .x_phi = 0.0}, {}, slots_, factor_.matrix());
-  factorised_ = factor_.factorise();
+  const ElementFields at{.x = x.data(), .phi = phi.data()};
+  if (is_large()) {
+    make_multigrid(at);
+    factorised_ = true;
+  } else {
+    math::SymmetricBlockMatrix& matrix = factor_->factor.matrix();
+    matrix.set_zero();
+    elements_.tangent(at, {.stiffness = 0.0, .x_phi = 0.0}, {}, factor_->slots, matrix);
+    factorised_ = factor_->factor.factorise();
+  }
   factor_x_ = x;
   factor_phi_ = phi;
+}
+
+void PotentialSolver::make_multigrid(const ElementFields& at) {
+  multigrid_.reset();
+  const math::NodeMask mask = potential_mask(unknowns_.mask());
+  const math::SymmetricBlockPattern pattern(elements_.n_nodes(), 4, elements_.cells());
+  math::SymmetricBlockMatrix matrix(pattern);
+  elements_.tangent(at, {.stiffness = 0.0, .x_phi = 0.0}, {}, elements_.slots_in(pattern), matrix);
+  double sign = 1.0;
+  for (std::size_t node = 0; node < mask.size(); ++node) {
+    const double diagonal = matrix.values()[16 * static_cast<std::size_t>(pattern.row_start()[node]) + 15];
+    if ((mask[node] >> potential_bit & 1) == 0) sign = diagonal < 0.0 ? -1.0 : 1.0;
+  }
+  matrix.constrain(mask, sign);
+  math::DoubleCsr laplacian = math::component_matrix(matrix, potential_bit, sign);
+  math::AggregationMultigrid cycle(laplacian);
+  const Eigen::VectorXf zero = Eigen::VectorXf::Zero(elements_.n_nodes());
+  multigrid_.emplace(Multigrid{std::move(laplacian), std::move(cycle), sign, zero, zero});
 }
 
 void PotentialSolver::store_memory(Eigen::Ref<Eigen::VectorXd> out) const {
@@ -74,10 +114,32 @@ void PotentialSolver::condense(Eigen::VectorXd& rows) const {
 }
 
 void PotentialSolver::precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) {
+  if (is_large()) {
+    // Near the sizes of single precision nothing is lost: the scale of r does not matter.
+    const double size = r.lpNorm<Eigen::Infinity>();
+    if (size > 0.0) multigrid_->r = (r / size).cast<float>();
+    multigrid_->cycle.apply(multigrid_->r, multigrid_->z);
+    z = multigrid_->sign * size * multigrid_->z.cast<double>();
+    return;
+  }
   full_.setZero();
   for (Eigen::Index node = 0; node < r.size(); ++node) full_[4 * node + potential_bit] = r[node];
-  factor_.solve(full_);
+  factor_->factor.solve(full_);
   for (Eigen::Index node = 0; node < r.size(); ++node) z[node] = full_[4 * node + potential_bit];
+}
+
+void PotentialSolver::multiply(const ElementFields& at, const Eigen::VectorXd& d, Eigen::VectorXd& out) const {
+  if (is_large()) {
+    math::for_vector_chunks(d.size(), [&](std::ptrdiff_t first, std::ptrdiff_t n) {
+      for (std::ptrdiff_t i = first; i < first + n; ++i) {
+        out[i] = multigrid_->sign * multigrid_->matrix.row_times(i, d.data());
+      }
+    });
+  } else {
+    out.setZero();
+    elements_.action(at, {.phi = d.data()}, {.charge = out.data()});
+  }
+  condense(out);
 }
 
 int PotentialSolver::conjugate_gradients(const ElementFields& at) {
@@ -85,13 +147,12 @@ int PotentialSolver::conjugate_gradients(const ElementFields& at) {
   precondition(r_, z_);
   d_ = z_;
   double rz = r_.dot(z_);
-  const double goal = std::abs(rz) * cg_reduction * cg_reduction;
+  const double reduction = is_large() ? cg_reduction_of_large : cg_reduction;
+  const double goal = std::abs(rz) * reduction * reduction;
   int iterations = 0;
   while (std::abs(rz) > goal && iterations < max_cg) {
     ++iterations;
-    Ad_.setZero();
-    elements_.action(at, {.phi = d_.data()}, {.charge = Ad_.data()});
-    condense(Ad_);
+    multiply(at, d_, Ad_);
     const double dAd = d_.dot(Ad_);
     if (dAd == 0.0) break;
     const double length = rz / dAd;
@@ -99,7 +160,9 @@ int PotentialSolver::conjugate_gradients(const ElementFields& at) {
     r_ -= length * Ad_;
     precondition(r_, z_);
     const double next = r_.dot(z_);
-    d_ = z_ + (next / rz) * d_;
+    // Single precision wants the form of Polak and Ribiere: the new residual less the old one.
+    const double turn = is_large() ? -length * Ad_.dot(z_) / rz : next / rz;
+    d_ = z_ + turn * d_;
     rz = next;
   }
   return iterations;
@@ -115,7 +178,8 @@ bool PotentialSolver::solve(const Eigen::Ref<const Eigen::VectorXd>& x, const Ei
     condense(r_);
     if (!factorised_) factorise(x, phi);
     if (!factorised_) return false;
-    if (conjugate_gradients(at) > cg_with_fresh_factor) factorised_ = false;
+    const int needed = conjugate_gradients(at);
+    if (is_large() ? iteration == slow_newton : needed > cg_with_fresh_factor) factorised_ = false;
     phi += step_;
     const double change = step_.lpNorm<Eigen::Infinity>();
     if (!std::isfinite(change)) return false;

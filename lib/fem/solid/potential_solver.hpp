@@ -2,13 +2,16 @@
 /// Potentials in electrostatic equilibrium at a given configuration: R_phi(x, phi) = 0.
 ///
 /// Newton with conjugate gradients on the exact operator; the preconditioner is a factor that is kept as long as it
-/// serves, so that repeated solves near one configuration cost a few back substitutions.
+/// serves, so that repeated solves near one configuration cost a few back substitutions. On large meshes the residual
+/// alone is exact: the operator is a kept matrix, and multigrid the preconditioner.
 #include <Eigen/Core>
-#include <functional>
+#include <memory>
+#include <optional>
 
 #include "fem/solid/element_set.hpp"
 #include "fem/solid/solid_factor.hpp"
 #include "fem/solid/solid_unknowns.hpp"
+#include "math/aggregation_multigrid.hpp"
 
 namespace muldi::fem {
 
@@ -29,6 +32,7 @@ class PotentialSolver {
 
  private:
   void factorise(const Eigen::Ref<const Eigen::VectorXd>& x, const Eigen::Ref<const Eigen::VectorXd>& phi);
+  void multiply(const ElementFields& at, const Eigen::VectorXd& d, Eigen::VectorXd& out) const;
   void precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z);
   int conjugate_gradients(const ElementFields& at);
   void condense(Eigen::VectorXd& rows) const;
@@ -36,9 +40,29 @@ class PotentialSolver {
   const ElementSet& elements_;
   const SolidUnknowns& unknowns_;
   const SolidDescription& data_;
-  math::SymmetricBlockPattern pattern_;
-  std::vector<std::int32_t> slots_;
-  SolidFactor factor_;
+  struct Factor {
+    math::SymmetricBlockPattern pattern;
+    std::vector<std::int32_t> slots;
+    SolidFactor factor;
+
+    Factor(math::SymmetricBlockPattern of, std::vector<std::int32_t> at, const math::NodeMask& mask,
+           std::vector<std::vector<int>> electrodes)
+        : pattern(std::move(of)), slots(std::move(at)), factor(pattern, mask, std::move(electrodes)) {}
+  };
+  static std::unique_ptr<Factor> make_factor(const ElementSet& elements, const SolidUnknowns& unknowns,
+                                             const SolidDescription& data);
+  /// Of a large mesh: the kept operator, without fixed and floating potentials, times `sign`.
+  struct Multigrid {
+    math::DoubleCsr matrix;
+    math::AggregationMultigrid cycle;
+    double sign;
+    Eigen::VectorXf r, z;
+  };
+  bool is_large() const { return factor_ == nullptr; }
+  void make_multigrid(const ElementFields& at);
+
+  std::unique_ptr<Factor> factor_;
+  std::optional<Multigrid> multigrid_;
   bool factorised_ = false;
   Eigen::VectorXd factor_x_;  // where it was made
   Eigen::VectorXd factor_phi_;

@@ -30,6 +30,7 @@ Solid::Solid(SolidDescription data)
     : data_(std::move(data)),
       elements_(data_.X, data_.cells, data_.material_of_cell, element_materials(data_)),
       unknowns_(data_),
+      ties_(data_),
       loads_(data_, elements_),
       V_(Eigen::VectorXd::Zero(elements_.n_cells())),
       size_(diagonal(data_.X)),
@@ -41,6 +42,7 @@ Solid::Solid(SolidDescription data)
       weight_(V_),
       phi_(charge_) {
   elements_.volumes(data_.X.data(), nullptr, {.reference = V_.data()});
+  if (is_incompressible()) filter_ = PressureFilter(elements_, unknowns_, V_);
   q_.size = data_.X.size();
   y_.size = n_potentials() + n_pressures();
   if (unknowns_.n_free_potentials() > 0) {
@@ -94,11 +96,13 @@ Eigen::VectorXd Solid::charge_rows(const Eigen::Ref<const Eigen::VectorXd>& x, c
 
 void Solid::start(Eigen::VectorXd& q, Eigen::VectorXd& y) const {
   positions(q) = data_.X;
+  ties_.follow(q_.first, q);
   y.segment(y_.first, y_.size).setZero();
 }
 
 void Solid::place(const model::Placement& at, Eigen::VectorXd& q, Eigen::VectorXd& y) const {
   unknowns_.place_positions(at.u_end, positions(q));
+  ties_.follow(q_.first, q);
   if (unknowns_.has_field()) unknowns_.place_potentials(at.u, potentials(y));
 }
 
@@ -108,7 +112,8 @@ void Solid::settle_stage(const model::IntervalPoint& at, Eigen::VectorXd& y) con
   potential_solver_->solve(positions(at.q), charge_, potentials(y));
 }
 
-void Solid::add_forces(const model::IntervalPoint& at, model::IntervalForces& out) const {
+model::PartLimits Solid::add_part_forces(const model::IntervalPoint& at, model::IntervalForces& out) const {
+  model::PartLimits limits;
   const bool whole = at.y != nullptr;
   force_.setZero();
   momentum_.setZero();
@@ -119,10 +124,9 @@ void Solid::add_forces(const model::IntervalPoint& at, model::IntervalForces& ou
     loads_.surface_charge(at.u, charge_);
     targets.charge = charge_.data();
   }
-  const double margin = elements_.forces(where, targets);
-  if (!(margin >= out.margin)) out.margin = margin;
+  limits.margin = elements_.forces(where, targets);
   if (where.v != nullptr) positions(out.momentum) += momentum_;
-  if (!whole) return;
+  if (!whole) return limits;
   if (where.phi != nullptr) {
     potential_scale_ = std::max(potential_scale_, potentials(*at.y).lpNorm<Eigen::Infinity>());
     potentials(out.stage) = -charge_;
@@ -130,19 +134,21 @@ void Solid::add_forces(const model::IntervalPoint& at, model::IntervalForces& ou
   }
   positions(out.force) -= force_;
   if (loads_.any()) loads_.add(positions(at.q), at.u, positions(out.force));
-  if (!has_pressures()) return;
+  if (!has_pressures()) return limits;
   if (at.dt > 0.0) {
-    add_volume_step(at, out);
+    add_volume_step(at, out, limits);
   } else {
-    add_volume_rest(at, out);
+    add_volume_rest(at, out, limits);
   }
+  return limits;
 }
 
 double Solid::pressure_weight(const model::IntervalPoint& at) const {
   return is_incompressible() && !at.first ? at.dt : 0.5 * at.dt;
 }
 
-void Solid::add_volume_step(const model::IntervalPoint& at, model::IntervalForces& out) const {
+void Solid::add_volume_step(const model::IntervalPoint& at, model::IntervalForces& out,
+                            model::PartLimits& limits) const {
   const auto p = pressures(*at.y);
   const Volumes& begin = volumes_at(positions(at.q0));
   const Volumes& end = volumes_at(positions(at.q1));
@@ -151,34 +157,38 @@ void Solid::add_volume_step(const model::IntervalPoint& at, model::IntervalForce
   begin.add_gradients(elements_, weight_, positions(out.begin));
   auto rows = pressures(out.stage);
   if (is_incompressible()) {
-    rows = -c * V_.cwiseProduct((end.J.array() - 1.0).matrix());
-    out.margin = std::min(out.margin, end.J.minCoeff());
-    out.violation = std::max(out.violation, (end.J.array() - 1.0).abs().maxCoeff());
+    rows = V_.cwiseProduct((end.J.array() - 1.0).matrix());
+    filter_.keep_rows(rows);
+    limits.margin = std::min(limits.margin, end.J.minCoeff());
+    limits.violation = std::max(limits.violation, rows.cwiseQuotient(V_).lpNorm<Eigen::Infinity>());
+    rows *= -c;
     return;
   }
   end.add_gradients(elements_, weight_, positions(out.end));
   for (int cell = 0; cell < elements_.n_cells(); ++cell) {
     const double J = 0.5 * (begin.J[cell] + end.J[cell]);
-    out.margin = std::min(out.margin, J);
+    limits.margin = std::min(limits.margin, J);
     const Dilation law = dilation(cell, J);
     rows[cell] = -at.dt * V_[cell] * (law.pressure - p[cell]) / law.stiffness;
   }
 }
 
-void Solid::add_volume_rest(const model::IntervalPoint& at, model::IntervalForces& out) const {
+void Solid::add_volume_rest(const model::IntervalPoint& at, model::IntervalForces& out,
+                            model::PartLimits& limits) const {
   const auto p = pressures(*at.y);
   const Volumes& here = volumes_at(positions(at.q));
   weight_ = -V_.cwiseProduct(p);
   here.add_gradients(elements_, weight_, positions(out.force));
   auto rows = pressures(out.stage);
-  out.margin = std::min(out.margin, here.J.minCoeff());
+  limits.margin = std::min(limits.margin, here.J.minCoeff());
+  if (is_incompressible()) {
+    rows = -V_.cwiseProduct((here.J.array() - 1.0).matrix());
+    filter_.keep_rows(rows);
+    return;
+  }
   for (int cell = 0; cell < elements_.n_cells(); ++cell) {
-    if (is_incompressible()) {
-      rows[cell] = -V_[cell] * (here.J[cell] - 1.0);
-    } else {
-      const Dilation law = dilation(cell, here.J[cell]);
-      rows[cell] = -V_[cell] * (law.pressure - p[cell]) / law.stiffness;
-    }
+    const Dilation law = dilation(cell, here.J[cell]);
+    rows[cell] = -V_[cell] * (law.pressure - p[cell]) / law.stiffness;
   }
 }
 
@@ -211,6 +221,13 @@ void Solid::add_multiplier_impulse(const Eigen::VectorXd& q, const Eigen::Vector
   volumes_at(positions(q)).add_gradients(elements_, weight_, positions(rows));
 }
 
+bool Solid::add_velocity_rows(const Eigen::VectorXd& q, const Eigen::VectorXd& v, Eigen::VectorXd& h) const {
+  if (!is_incompressible()) return false;
+  volumes_at(positions(q)).project(elements_, positions(v), weight_);
+  pressures(h) -= V_.cwiseProduct(weight_);
+  return true;
+}
+
 Eigen::Index Solid::n_memory() const { return potential_solver_ ? 1 + phi_.size() + potential_solver_->n_memory() : 0; }
 
 void Solid::store_memory(Eigen::Ref<Eigen::VectorXd> out) const {
@@ -227,17 +244,29 @@ void Solid::restore_memory(const Eigen::Ref<const Eigen::VectorXd>& memory) cons
   potential_solver_->restore_memory(memory.tail(potential_solver_->n_memory()));
 }
 
+void Solid::request(model::PatternRequest& pattern) const {
+  std::vector<int> nodes;
+  nodes.reserve(data_.hosts.size());
+  for (const Host& host : data_.hosts) nodes.push_back(host.pattern_node);
+  pattern.add_clique(nodes);
+}
+
+void Solid::follow(Eigen::VectorXd& velocity) const {
+  unknowns_.keep_free_positions(positions(velocity));
+  ties_.follow(q_.first, velocity);
+}
+
 void Solid::keep_free(Eigen::VectorXd& rows) const { unknowns_.keep_free_positions(positions(rows)); }
 
 std::unique_ptr<model::SubstructureSolver> Solid::make_solver(model::Linearisation kind,
                                                               const std::string& name) const {
-  static_cast<void>(name);
-  return std::make_unique<SolidSolver>(*this, kind);
+  return std::make_unique<SolidSolver>(*this, kind, name);
 }
 
 model::SolverSize Solid::solver_size(model::Linearisation kind, const std::string& name) const {
-  static_cast<void>(name);
-  return SolidSolver::size_of(*this, kind);
+  return SolidSolver::size_of(*this, kind, name);
 }
+
+void Solid::check_solver(const std::string& name) const { SolidSolver::check(*this, name); }
 
 }  // namespace muldi::fem

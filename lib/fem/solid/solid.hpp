@@ -12,8 +12,10 @@
 #include <memory>
 
 #include "fem/solid/potential_solver.hpp"
+#include "fem/solid/pressure_filter.hpp"
 #include "fem/solid/solid_loads.hpp"
 #include "fem/solid/solid_unknowns.hpp"
+#include "fem/solid/ties.hpp"
 #include "fem/solid/volumes.hpp"
 #include "model/substructure.hpp"
 
@@ -27,6 +29,9 @@ class Solid final : public model::Substructure {
   const SolidDescription& data() const { return data_; }
   const ElementSet& elements() const { return elements_; }
   const SolidUnknowns& unknowns() const { return unknowns_; }
+  const Ties& ties() const { return ties_; }
+  /// Name of the energy part, and of the folder of the results.
+  std::string part() const { return data_.part.empty() ? "solids/" + data_.name : data_.part; }
   bool has_pressures() const { return data_.formulation != Formulation::displacement; }
   bool is_incompressible() const {
     return data_.formulation == Formulation::incompressible || data_.formulation == Formulation::incompressible_direct;
@@ -36,6 +41,13 @@ class Solid final : public model::Substructure {
   bool is_viscous() const;
   /// V_e (n_cells).
   const Eigen::VectorXd& cell_volumes() const { return V_; }
+  /// Pressures that exert no force; none but in the incompressible formulations.
+  const PressureFilter& filter() const { return filter_; }
+  const SolidLoads& loads() const { return loads_; }
+  /// The largest potential so far.
+  double potential_scale() const { return potential_scale_; }
+  /// What the user should know of the solid before it moves, or empty.
+  std::string note() const;
   /// U of the mean dilatation, U' and U'' at J for a cell.
   struct Dilation {
     double U = 0.0;
@@ -76,45 +88,57 @@ class Solid final : public model::Substructure {
   Eigen::VectorXd charge_rows(const Eigen::Ref<const Eigen::VectorXd>& x, const Eigen::VectorXd& phi) const;
 
   // Substructure
+  model::PartLimits add_part_forces(const model::IntervalPoint& at, model::IntervalForces& out) const override;
   void start(Eigen::VectorXd& q, Eigen::VectorXd& y) const override;
   void place(const model::Placement& at, Eigen::VectorXd& q, Eigen::VectorXd& y) const override;
   void settle_stage(const model::IntervalPoint& at, Eigen::VectorXd& y) const override;
   std::unique_ptr<model::SubstructureSolver> make_solver(model::Linearisation kind,
                                                          const std::string& name) const override;
+  /// InputError if the named solver cannot serve the solid.
+  void check_solver(const std::string& name) const;
   model::SolverSize solver_size(model::Linearisation kind, const std::string& name) const override;
   model::IncrementSize size_of(const Eigen::VectorXd& dq, const Eigen::VectorXd& dy) const override;
+  double natural_length() const override { return size_; }
+  void add_load_rate(const model::IntervalPoint& at, std::span<const double> du, Eigen::VectorXd& rows,
+                     Eigen::VectorXd& h) const override;
   void keep_free(Eigen::VectorXd& rows) const override;
+  void gather(Eigen::VectorXd& rows) const override { ties_.gather(q_.first, rows); }
+  void follow(Eigen::VectorXd& velocity) const override;
   bool moves() const override { return unknowns_.moves(); }
   void add_multiplier_impulse(const Eigen::VectorXd& q, const Eigen::VectorXd& impulse,
                               Eigen::VectorXd& rows) const override;
+  bool add_velocity_rows(const Eigen::VectorXd& q, const Eigen::VectorXd& v, Eigen::VectorXd& h) const override;
   Eigen::Index n_memory() const override;
   void store_memory(Eigen::Ref<Eigen::VectorXd> out) const override;
   void restore_memory(const Eigen::Ref<const Eigen::VectorXd>& memory) const override;
 
   // IntervalTerm
-  void request(model::PatternRequest&) const override {}
+  void request(model::PatternRequest& pattern) const override;
   void bind(const math::BlockPattern&) override {}
-  void add_forces(const model::IntervalPoint& at, model::IntervalForces& out) const override;
   void add_tangent(const model::IntervalPoint&, const model::TangentWeights&, math::BlockMatrix&) const override {}
   void add_control_force(const model::IntervalPoint& at, int control, Eigen::VectorXd& out) const override;
   model::IntervalWork work(const model::IntervalPoint& at) const override;
-  std::vector<std::string> parts() const override { return {"solids/" + data_.name}; }
+  std::vector<std::string> parts() const override { return {part()}; }
   void energies(const model::NodePoint& at, std::span<model::Energy> out) const override;
   std::string inadmissible(const Eigen::VectorXd& q) const override;
+  /// Steps check the Gauss points in their middle; this looks at the nodes in time.
+  std::string advice(const model::NodePoint& at) const override { return inadmissible(at.q); }
 
  private:
-  void add_volume_step(const model::IntervalPoint& at, model::IntervalForces& out) const;
-  void add_volume_rest(const model::IntervalPoint& at, model::IntervalForces& out) const;
+  void add_volume_step(const model::IntervalPoint& at, model::IntervalForces& out, model::PartLimits& limits) const;
+  void add_volume_rest(const model::IntervalPoint& at, model::IntervalForces& out, model::PartLimits& limits) const;
 
   SolidDescription data_;
   ElementSet elements_;
   SolidUnknowns unknowns_;
+  Ties ties_;
   SolidLoads loads_;
   Eigen::VectorXd V_;
   double size_ = 0.0;
   double shear_modulus_ = 0.0;
   double mass_ = 0.0;
   std::unique_ptr<PotentialSolver> potential_solver_;
+  PressureFilter filter_;
 
   mutable Eigen::VectorXd force_;
   mutable Eigen::VectorXd momentum_;

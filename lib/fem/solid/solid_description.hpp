@@ -18,13 +18,20 @@ enum class Formulation {
   incompressible_direct  ///< IV: the same equations
 };
 
-/// A number, or the value of a control.
+/// factor control + constant, the first with a control only.
 struct Value {
   int control = -1;  ///< -1: none
   double constant = 0.0;
+  double factor = 1.0;
 
-  double at(std::span<const double> u) const { return control < 0 ? constant : u[static_cast<std::size_t>(control)]; }
-  bool is_zero() const { return control < 0 && constant == 0.0; }
+  double at(std::span<const double> u) const {
+    return control < 0 ? constant : factor * u[static_cast<std::size_t>(control)] + constant;
+  }
+  /// Its derivative when the controls move along `du`.
+  double rate(std::span<const double> du) const {
+    return control < 0 ? 0.0 : factor * du[static_cast<std::size_t>(control)];
+  }
+  bool is_zero() const { return (control < 0 || factor == 0.0) && constant == 0.0; }
 };
 
 /// One component of the displacement of a node.
@@ -72,8 +79,23 @@ struct SurfaceCharge {
   Value value = {};
 };
 
+/// A rigid body that nodes are tied to.
+struct Host {
+  std::string name = {};
+  int pattern_node = 0;    ///< of the model's pattern, with twelve unknowns
+  Eigen::Index first = 0;  ///< where phi, d1, d2, d3 begin in q
+};
+
+/// A node that is fixed to a body: x = phi + xi_1 d1 + xi_2 d2 + xi_3 d3 (numerics 5.26).
+struct Tie {
+  int node = 0;
+  int host = 0;
+  Eigen::Vector3d xi = Eigen::Vector3d::Zero();  ///< body coordinates of the node
+};
+
 struct SolidDescription {
   std::string name = {};
+  std::string part = {};   ///< energy part and folder, e.g. "muscles/upper"; empty: "solids/<name>"
   Eigen::VectorXd X = {};  ///< reference positions in the scene pose (3 n_nodes)
   std::vector<std::array<int, 8>> cells = {};
   std::vector<int> material_of_cell = {};
@@ -82,6 +104,9 @@ struct SolidDescription {
   Formulation formulation = Formulation::mean_dilatation;
 
   std::vector<PrescribedDisplacement> displacements = {};
+  std::vector<Host> hosts = {};  ///< ground is none: nodes that it holds have prescribed displacements
+  std::vector<Tie> ties = {};    ///< one a node, of nodes without prescribed displacements
+  bool tied_to_ground = false;   ///< prescribed displacements are ties to ground, which does not turn
   std::vector<PrescribedPotential> potentials = {};  ///< none: the solid has no field
   std::vector<FloatingElectrode> floating = {};
   std::vector<Electrode> electrodes = {};

@@ -20,6 +20,16 @@ bool Solid::is_viscous() const {
                      [](const Material& material) { return material.viscous.has_value(); });
 }
 
+std::string Solid::note() const {
+  // A constant pressure on a solid that is held all around is no pattern of the mesh.
+  if (filter_.n_patterns() <= 1) return {};
+  return base::format(
+      "solid '{}' is held in such a way that {} patterns of element pressures, checkerboards among them, exert no "
+      "force: "
+      "they are filtered out of the pressures, and the volume is kept of groups of cells instead of every single one",
+      data_.name, filter_.n_patterns());
+}
+
 model::IntervalWork Solid::work(const model::IntervalPoint& at) const {
   model::IntervalWork work;
   if (at.dt <= 0.0) return work;

@@ -1,7 +1,5 @@
 #include "fem/solid/solid_factor.hpp"
 
-#include <Eigen/Eigenvalues>
-
 #include "base/memory.hpp"
 #include "base/text.hpp"
 
@@ -20,79 +18,18 @@ const math::LdltAnalysis& affordable(const math::LdltAnalysis& analysis) {
 }  // namespace
 
 SolidFactor::SolidFactor(const math::SymmetricBlockPattern& pattern, const math::NodeMask& mask,
-                         std::vector<std::vector<int>> electrodes)
-    : matrix_(pattern),
+                         std::vector<std::vector<int>> electrodes, math::FactorStorage storage)
+    : SolidLinear(pattern, mask, std::move(electrodes)),
       analysis_(pattern, mask),
-      factor_(affordable(analysis_)),
-      electrodes_(std::move(electrodes)),
-      indicator_(Eigen::VectorXd::Zero(matrix_.n_rows())) {
-  const int block = pattern.block_size();
-  for (std::size_t node = 0; node < mask.size(); ++node) {
-    for (int i = 0; i < block; ++i) {
-      if ((mask[node] >> i & 1) != 0) masked_.push_back(static_cast<Eigen::Index>(node) * block + i);
-    }
-  }
-  const auto n = static_cast<Eigen::Index>(electrodes_.size());
-  columns_ = Eigen::MatrixXd::Zero(matrix_.n_rows(), n);
-  responses_ = columns_;
-  schur_ = Eigen::MatrixXd::Zero(n, n);
-  inverse_schur_ = schur_;
-  common_ = Eigen::VectorXd::Zero(n);
-}
+      factor_(affordable(analysis_), storage) {}
 
-double SolidFactor::sum_over(const std::vector<int>& nodes, const Eigen::VectorXd& x) const {
-  double sum = 0.0;
-  for (const int node : nodes) sum += x[static_cast<Eigen::Index>(node) * matrix_.block_size() + 3];
-  return sum;
-}
+std::string factor_name(math::Ordering ordering) { return "ldlt (" + std::string(name_of(ordering)) + ")"; }
 
-void SolidFactor::make_border() {
-  for (std::size_t e = 0; e < electrodes_.size(); ++e) {
-    const auto column = static_cast<Eigen::Index>(e);
-    indicator_.setZero();
-    for (const int node : electrodes_[e]) indicator_[static_cast<Eigen::Index>(node) * matrix_.block_size() + 3] = 1.0;
-    matrix_.multiply(indicator_, columns_.col(column));
-    for (std::size_t other = 0; other < electrodes_.size(); ++other) {
-      schur_(static_cast<Eigen::Index>(other), column) = sum_over(electrodes_[other], columns_.col(column));
-    }
-  }
-  for (const Eigen::Index i : masked_) columns_.row(i).setZero();
-}
+std::string SolidFactor::name() const { return factor_name(size().ordering); }
 
-bool SolidFactor::factorise() {
-  make_border();
+int SolidFactor::factorise_free() {
   const math::LdltOutcome outcome = factor_.factorise(matrix_);
-  n_negative_ = outcome.n_negative;
-  if (!outcome.ok || outcome.smallest_ratio < singular_pivot) return false;
-  if (electrodes_.empty()) return true;
-  responses_ = columns_;
-  factor_.solve_columns(responses_);
-  for (const Eigen::Index i : masked_) responses_.row(i).setZero();
-  schur_.noalias() -= columns_.transpose() * responses_;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(schur_);
-  const Eigen::VectorXd& values = eigen.eigenvalues();
-  n_negative_ += static_cast<int>((values.array() < 0.0).count());
-  if (values.cwiseAbs().minCoeff() == 0.0) return false;
-  inverse_schur_ = eigen.eigenvectors() * values.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
-  return true;
-}
-
-void SolidFactor::solve(Eigen::VectorXd& x) {
-  for (std::size_t e = 0; e < electrodes_.size(); ++e) {
-    common_[static_cast<Eigen::Index>(e)] = sum_over(electrodes_[e], x);
-  }
-  for (const Eigen::Index i : masked_) x[i] = 0.0;
-  factor_.solve(x);
-  for (const Eigen::Index i : masked_) x[i] = 0.0;
-  if (electrodes_.empty()) return;
-  common_ -= columns_.transpose() * x;
-  common_ = (inverse_schur_ * common_).eval();
-  x.noalias() -= responses_ * common_;
-  for (std::size_t e = 0; e < electrodes_.size(); ++e) {
-    for (const int node : electrodes_[e]) {
-      x[static_cast<Eigen::Index>(node) * matrix_.block_size() + 3] = common_[static_cast<Eigen::Index>(e)];
-    }
-  }
+  return outcome.ok && outcome.smallest_ratio >= singular_pivot ? outcome.n_negative : -1;
 }
 
 }  // namespace muldi::fem

@@ -21,8 +21,19 @@ class SolidLoads {
                     Eigen::Ref<Eigen::VectorXd> f) const;
   /// f += d(forces)/du_control.
   void add_control_force(const Eigen::Ref<const Eigen::VectorXd>& x, int control, Eigen::Ref<Eigen::VectorXd> f) const;
+  /// True if some pressure follows the surface now.
+  bool has_pressure(std::span<const double> u) const;
+  /// f += the derivative of the forces at x along dx: pressures turn and grow with their surface.
+  void add_change(const Eigen::Ref<const Eigen::VectorXd>& x, std::span<const double> u,
+                  const Eigen::Ref<const Eigen::VectorXd>& dx, Eigen::Ref<Eigen::VectorXd> f) const;
+  /// K -= weight times the symmetric part of that derivative. It is all of it where the pressed surface is closed or
+  /// its edge is held.
+  void add_stiffness(const Eigen::Ref<const Eigen::VectorXd>& x, std::span<const double> u, double weight,
+                     math::SymmetricBlockMatrix& K) const;
   /// Charges that are put on the nodes (n_nodes); those of floating electrodes on their first node.
   void surface_charge(std::span<const double> u, Eigen::VectorXd& charge) const;
+  /// The derivative of surface_charge when the controls move along `du`.
+  void surface_charge_rate(std::span<const double> du, Eigen::VectorXd& charge) const;
   /// -m g.x.
   double gravity_energy(const Eigen::Ref<const Eigen::VectorXd>& x) const;
   /// Mass of each node (n_nodes), and their sum.

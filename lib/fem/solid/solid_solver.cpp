@@ -1,15 +1,23 @@
 #include "fem/solid/solid_solver.hpp"
 
+#include <algorithm>
 #include <cmath>
+
+#include "fem/solid/solid_factor.hpp"
 
 namespace muldi::fem {
 namespace {
 
 /// Stiffness of the volume in the factors of the incompressible formulations, over what resists the smoothest motion.
 constexpr double augmentation = 3e2;
+/// The same where patterns of pressures are filtered out, against which it works in vain.
+constexpr double filtered_augmentation = 30.0;
 constexpr double pi = 3.14159265358979323846;
-constexpr int max_refinements = 12;
-constexpr double refined = 1e-14;
+constexpr int max_refinements = 60;
+constexpr double accuracy_at_rest = 1e-6;
+constexpr int max_exact_iterations = 60;
+/// Part of the factor's compliance that is left in the volume rows of an increment; it vanishes with the increment.
+constexpr double proximal = 1e-9;
 
 std::vector<std::vector<int>> electrodes_in(const Solid& solid, model::Linearisation kind) {
   std::vector<std::vector<int>> nodes;
@@ -18,7 +26,7 @@ std::vector<std::vector<int>> electrodes_in(const Solid& solid, model::Linearisa
   return nodes;
 }
 
-std::string name_with(math::Ordering ordering) { return "solid ldlt (" + std::string(name_of(ordering)) + ")"; }
+std::string name_with(const std::string& linear) { return "solid " + linear; }
 
 int block_size_of(const Solid& solid, model::Linearisation kind) {
   return solid.unknowns().n_free_potentials() > 0 && kind != model::Linearisation::velocity ? 4 : 3;
@@ -34,37 +42,71 @@ int negative_potentials(const Solid& solid) {
   return solid.unknowns().n_free_potentials();
 }
 
+/// eta of the viscous stress eta d, which resists shear over a step as a modulus eta/dt does; 0 without.
+double viscosity_of(const Material& material) {
+  return material.viscous ? std::visit([](const auto& law) { return law.viscosity; }, *material.viscous) : 0.0;
+}
+
+SolverTask task_of(const Solid& solid, model::Linearisation kind) {
+  const bool velocity = kind == model::Linearisation::velocity;
+  return {.kind = kind,
+          .n_unknowns = solid.unknowns().n_free_positions() + (velocity ? 0 : solid.unknowns().n_free_potentials()),
+          .n_negative = velocity ? 0 : negative_potentials(solid),
+          .tied = !solid.ties().empty()};
+}
+
 }  // namespace
 
-SolidSolver::SolidSolver(const Solid& solid, model::Linearisation kind)
+SolidSolver::SolidSolver(const Solid& solid, model::Linearisation kind, const std::string& name)
     : solid_(solid),
       kind_(kind),
       pattern_(solid.elements().n_nodes(), block_size_of(solid, kind), solid.elements().cells()),
       slots_(solid.elements().slots_in(pattern_)),
-      factor_(pattern_, solid.unknowns().mask(), electrodes_in(solid, kind)),
-      expected_negative_(kind == model::Linearisation::velocity ? 0 : negative_potentials(solid)) {
+      expected_negative_(task_of(solid, kind).n_negative),
+      linear_(make_linear(task_of(solid, kind), name, pattern_, solid.unknowns().mask(), electrodes_in(solid, kind))),
+      turning_(solid.data()),
+      responses_(solid.data(), linear_->matrix().n_rows(), pattern_.block_size(), solid.n_pressures(),
+                 storage_for(task_of(solid, kind))),
+      residual_(solid),
+      total_(solid),
+      action_(solid),
+      direction_(solid),
+      product_(solid),
+      response_(solid) {
   const Eigen::Index n_nodes = solid.elements().n_nodes();
-  rhs_ = Eigen::VectorXd::Zero(factor_.matrix().n_rows());
-  for (Eigen::VectorXd* v : {&dx_, &total_x_, &force_}) *v = Eigen::VectorXd::Zero(3 * n_nodes);
-  for (Eigen::VectorXd* v : {&weight_, &coupling_, &compliance_, &curvature_, &rows_, &dp_, &total_p_}) {
+  rhs_ = Eigen::VectorXd::Zero(linear_->matrix().n_rows());
+  for (Eigen::VectorXd* v : {&dx_, &force_}) *v = Eigen::VectorXd::Zero(3 * n_nodes);
+  for (Eigen::VectorXd* v : {&weight_, &coupling_, &compliance_, &curvature_, &rows_, &dp_, &scaled_p_}) {
     *v = Eigen::VectorXd::Zero(solid.n_pressures());
   }
-  total_phi_ = Eigen::VectorXd::Zero(n_nodes);
 }
 
-model::SolverSize SolidSolver::size_of(const Solid& solid, model::Linearisation kind) {
+model::SolverSize SolidSolver::size_of(const Solid& solid, model::Linearisation kind, const std::string& name) {
   const math::SymmetricBlockPattern pattern(solid.elements().n_nodes(), block_size_of(solid, kind),
                                             solid.elements().cells());
-  const math::LdltSize size = math::LdltAnalysis(pattern, solid.unknowns().mask()).size();
   const double block = pattern.block_size();
-  return {.solver = name_with(size.ordering),
-          .matrix_bytes = 8.0 * block * block * pattern.n_blocks(),
-          .factor_bytes = static_cast<double>(size.factor_bytes + size.work_bytes)};
+  model::SolverSize size{.matrix_bytes = 8.0 * block * block * pattern.n_blocks()};
+  const SolverTask task = task_of(solid, kind);
+  if (is_direct(task, name)) {
+    const math::LdltSize factor = math::LdltAnalysis(pattern, solid.unknowns().mask()).size();
+    size.solver = name_with(factor_name(factor.ordering));
+    size.factor_bytes = static_cast<double>(factor.factor_bytes + factor.work_bytes);
+  } else {
+    const SolidIteration::Options options = iteration_for(task, name);
+    size.solver = name_with(SolidIteration::name_of(options));
+    size.factor_bytes = SolidIteration::bytes_of(pattern, options);
+  }
+  return size;
 }
 
-std::string SolidSolver::name() const { return name_with(factor_.size().ordering); }
+void SolidSolver::check(const Solid& solid, const std::string& name) {
+  const SolverTask task = task_of(solid, model::Linearisation::step);
+  if (!is_direct(task, name)) iteration_for(task, name);
+}
 
-int SolidSolver::unstable_directions() const { return factor_.n_negative() - expected_negative_; }
+std::string SolidSolver::name() const { return name_with(linear_->name()); }
+
+int SolidSolver::unstable_directions() const { return linear_->n_negative() - expected_negative_; }
 
 void SolidSolver::weigh_pressures(const model::IntervalPoint& at) {
   using model::Linearisation;
@@ -78,7 +120,11 @@ void SolidSolver::weigh_pressures(const model::IntervalPoint& at) {
   const double inertia = solid_.mass() / V.sum() * wave * wave;
   for (Eigen::Index cell = 0; cell < V.size(); ++cell) {
     const auto index = static_cast<std::size_t>(solid_.data().material_of_cell[static_cast<std::size_t>(cell)]);
-    double stiffness = augmentation * (solid_.data().shear_moduli[index] + inertia);
+    const double viscous = step ? viscosity_of(solid_.data().materials[index]) / at.dt : 0.0;
+    double stiffness = augmentation * (solid_.data().shear_moduli[index] + viscous + inertia);
+    if (solid_.filter().n_patterns() > 0) {
+      stiffness = filtered_augmentation * (solid_.shear_modulus() + viscous + inertia);
+    }
     if (!solid_.is_incompressible()) stiffness = solid_.dilation(static_cast<int>(cell), lagged_.J[cell]).stiffness;
     compliance_[cell] = scale * V[cell] / stiffness;
     // The penalty of a step would be four times that of mean dilatation, whose c is half as large.
@@ -126,8 +172,12 @@ void SolidSolver::assemble(const model::IntervalPoint& at) {
     coupling_.setZero();
     compliance_.setOnes();
   }
-  factor_.matrix().set_zero();
-  solid_.elements().tangent(solid_.fields(at), weights, {}, slots_, factor_.matrix());
+  linear_->matrix().set_zero();
+  solid_.elements().tangent(solid_.fields(at), weights, {}, slots_, linear_->matrix());
+  // In steps it is small beside the inertia, and a restart makes the factor without the controls of that time.
+  if (kind_ == Linearisation::rest) {
+    solid_.loads().add_stiffness(solid_.positions(at.q), at.u, weights.stiffness, linear_->matrix());
+  }
 }
 
 bool SolidSolver::factorise(const model::IntervalPoint& at) {
@@ -139,13 +189,18 @@ bool SolidSolver::factorise(const model::IntervalPoint& at) {
     lagged_.J = Eigen::VectorXd::Ones(solid_.n_pressures());
   }
   assemble(at);
-  factorised_ = factor_.factorise();
+  factorised_ = linear_->factorise();
+  turning_.keep(at.q1);
+  if (factorised_ && !responses_.empty()) make_responses();
+  accuracy_ = 0.0;
+  // What a pressure on an open surface adds to the stiffness is not symmetric.
+  if (kind_ == model::Linearisation::rest && solid_.loads().has_pressure(at.u)) linearise(at, accuracy_at_rest);
   return factorised_;
 }
 
 void SolidSolver::back_substitute() {
   const Eigen::Index block = pattern_.block_size();
-  factor_.solve(rhs_);
+  linear_->solve(rhs_);
   for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
     dx_.segment<3>(3 * node) = rhs_.segment<3>(block * node);
   }
@@ -155,55 +210,146 @@ void SolidSolver::back_substitute() {
   }
 }
 
-void SolidSolver::reduce(Eigen::VectorXd& bracket, const Eigen::VectorXd& h) {
+/// With the matrix of the factor. For the incompressible formulations a step leaves what the augmentation has let
+/// through to the next iteration.
+void SolidSolver::solve_lagged(const SolidVector& rows, SolidVector& out) {
   const Eigen::Index block = pattern_.block_size();
-  force_ = solid_.positions(bracket);
+  force_ = rows.x;
   if (solid_.has_pressures()) {
-    rows_ = solid_.pressures(h);
+    rows_ = rows.p;
     dp_ = coupling_.cwiseProduct(rows_).cwiseQuotient(compliance_);
     lagged_.add_gradients(solid_.elements(), dp_, force_);
   }
   for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
     rhs_.segment<3>(block * node) = force_.segment<3>(3 * node);
-    if (block == 4) rhs_[4 * node + potential_bit] = potential_rows_ * h[solid_.y_slice().first + node];
+    if (block == 4) rhs_[4 * node + potential_bit] = potential_rows_ * rows.phi[node];
   }
   back_substitute();
-  total_x_ = dx_;
-  total_p_ = dp_;
-  total_phi_.setZero();
+  out.x = dx_;
+  out.p = dp_;
+  out.phi.setZero();
   if (block == 4) {
-    for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) total_phi_[node] = rhs_[4 * node + potential_bit];
+    for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) out.phi[node] = rhs_[4 * node + potential_bit];
   }
-  if (exact() && solid_.is_incompressible()) refine();
+  if (solid_.is_incompressible() && (exact() || solid_.filter().n_patterns() > 1)) refine(out);
 }
 
-/// What the compliance of the factor has let through is given back until the volume rows hold exactly.
-void SolidSolver::refine() {
+void SolidSolver::pack_rows(const SolidVector& rows) {
   const Eigen::Index block = pattern_.block_size();
-  const double first = dp_.lpNorm<Eigen::Infinity>();
-  for (int i = 0; i < max_refinements && dp_.lpNorm<Eigen::Infinity>() > refined * first; ++i) {
-    rows_ = -compliance_.cwiseProduct(dp_);
-    force_.setZero();
-    dp_ = coupling_.cwiseProduct(rows_).cwiseQuotient(compliance_);
-    lagged_.add_gradients(solid_.elements(), dp_, force_);
-    rhs_.setZero();
-    for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
-      rhs_.segment<3>(block * node) = force_.segment<3>(3 * node);
-    }
-    back_substitute();
-    total_x_ += dx_;
-    total_p_ += dp_;
-    if (block == 4) {
-      for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) total_phi_[node] += rhs_[4 * node + potential_bit];
-    }
+  for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
+    rhs_.segment<3>(block * node) = rows.x.segment<3>(3 * node);
+    if (block == 4) rhs_[4 * node + potential_bit] = potential_rows_ * rows.phi[node];
+  }
+}
+
+void SolidSolver::reduce(const Eigen::VectorXd& bracket, const Eigen::VectorXd& h) {
+  residual_.x = solid_.positions(bracket);
+  if (turning_.is_turned()) turning_.back(residual_.x);
+  if (solid_.n_potentials() > 0) residual_.phi = solid_.potentials(h);
+  if (solid_.has_pressures()) residual_.p = solid_.pressures(h);
+  if (!responses_.empty()) {
+    pack_rows(residual_);
+    responses_.answer(turning_, rhs_, residual_.p);
+  }
+  solve_lagged(residual_, total_);
+  if (accuracy_ == 0.0) return;
+  solve_exactly();
+  if (kind_ == model::Linearisation::step) accuracy_ = 0.0;
+}
+
+void SolidSolver::linearise(const model::IntervalPoint& at, double accuracy) {
+  action_.linearise(at);
+  accuracy_ = accuracy;
+}
+
+/// The unknowns in their natural sizes, so that errors of all count alike.
+void SolidSolver::pack(const SolidVector& from, Eigen::VectorXd& to) const {
+  to << from.x / solid_.size(), from.phi / volt(), from.p / solid_.shear_modulus();
+}
+
+void SolidSolver::unpack(const Eigen::VectorXd& from, SolidVector& to) const {
+  to.x = from.head(to.x.size()) * solid_.size();
+  to.phi = from.segment(to.x.size(), to.phi.size()) * volt();
+  to.p = from.tail(to.p.size()) * solid_.shear_modulus();
+}
+
+/// Newton's increment by GMRES on the exact derivative behind the lagged solution: errors are those of the increment.
+void SolidSolver::solve_exactly() {
+  const auto product = [this](const Eigen::VectorXd& d, Eigen::VectorXd& out) {
+    unpack(d, direction_);
+    if (turning_.is_turned()) turning_.forth(direction_.x);
+    action_.apply(direction_, product_);
+    if (turning_.is_turned()) turning_.back(product_.x);
+    solve_lagged(product_, response_);
+    pack(response_, out);
+  };
+  const auto same = [](const Eigen::VectorXd& r, Eigen::VectorXd& z) { z = r; };
+  start_.resize(total_.x.size() + total_.phi.size() + total_.p.size());
+  pack(total_, start_);
+  increment_ = start_;
+  gmres_.solve(product, same, start_, increment_,
+               {.relative_tolerance = accuracy_, .max_iterations = max_exact_iterations});
+  unpack(increment_, total_);
+}
+
+/// What the compliance of the factor has let through is given back until the volume rows hold to round-off. With A the
+/// matrix of the factor, B that of the volume rows, D the compliance: (B A^-1 B^T (1 - delta) + delta D) p = B x -
+/// rows, by conjugate gradients with D^-1 in front, whose eigenvalues are near one where the augmentation dominates;
+/// the tiny part delta bounds pressures with hardly any force. With filtered patterns N, N^T V N = 1, D = d V: the
+/// volume rows hold but for V N a, N^T V p = 0, and elimination of a leaves the same equations less d V N N^T V, for p
+/// with its patterns, which are then left out.
+void SolidSolver::refine(SolidVector& out) {
+  const auto complement = [this](const Eigen::VectorXd& p, Eigen::VectorXd& product) {
+    respond(p);
+    lagged_.project(solid_.elements(), dx_, product);
+    product = (1.0 - proximal) * coupling_.cwiseProduct(product) + proximal * compliance_.cwiseProduct(p);
+    solid_.filter().add_patterns(-compliance_[0] / solid_.cell_volumes()[0], p, product);
+  };
+  const auto inverse_compliance = [this](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
+    z = r.cwiseQuotient(compliance_);
+  };
+  // With the pressures of the factor left out, the rows miss D p by what the factor's own solution says.
+  rows_ = compliance_.cwiseProduct(out.p);
+  out.p.setZero();
+  const math::KrylovLimits limits{.relative_tolerance = std::max(refined, 10.0 * linear_->accuracy()),
+                                  .max_iterations = max_refinements};
+  // Beyond a loss of stability the complement has other signs, and so it has for filtered patterns.
+  if (solid_.filter().n_patterns() > 0 ||
+      complement_cg_.solve(complement, inverse_compliance, rows_, out.p, limits).end == math::KrylovEnd::breakdown) {
+    complement_minres_.solve(complement, inverse_compliance, rows_, out.p, limits);
+  }
+  dp_ = (1.0 - proximal) * out.p;
+  respond(dp_);
+  solid_.filter().keep_pressures(out.p);
+  out.x -= dx_;
+  if (pattern_.block_size() == 4) {
+    for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) out.phi[node] -= rhs_[4 * node + potential_bit];
+  }
+}
+
+/// A^-1 B^T p, of which dx_ is the part of the positions.
+void SolidSolver::respond(const Eigen::VectorXd& p) {
+  const Eigen::Index block = pattern_.block_size();
+  force_.setZero();
+  scaled_p_ = coupling_.cwiseProduct(p);
+  lagged_.add_gradients(solid_.elements(), scaled_p_, force_);
+  rhs_.setZero();
+  for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
+    rhs_.segment<3>(block * node) = force_.segment<3>(3 * node);
+  }
+  linear_->solve(rhs_);
+  for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
+    dx_.segment<3>(3 * node) = rhs_.segment<3>(block * node);
   }
 }
 
 void SolidSolver::expand(Eigen::VectorXd& dq, Eigen::VectorXd& dy) {
-  solid_.positions(dq) = total_x_;
+  if (!responses_.empty()) add_motion_of_bodies(dq);
+  if (turning_.is_turned()) turning_.forth(total_.x);
+  solid_.positions(dq) = total_.x;
   if (dy.size() == 0) return;
-  if (solid_.n_potentials() > 0) solid_.potentials(dy) = total_phi_;
-  if (solid_.has_pressures()) solid_.pressures(dy) = total_p_;
+  if (solid_.n_potentials() > 0) solid_.potentials(dy) = total_.phi;
+  if (solid_.has_pressures()) solid_.pressures(dy) = total_.p;
 }
 
 }  // namespace muldi::fem

@@ -11,6 +11,7 @@ SolidUnknowns::SolidUnknowns(const SolidDescription& data)
     mask_[static_cast<std::size_t>(said.node)] |= static_cast<std::uint8_t>(1U << said.component);
     moves_ |= said.value.control >= 0;
   }
+  for (const Tie& tie : data.ties) mask_[static_cast<std::size_t>(tie.node)] |= std::uint8_t{0b111};
   for (int node = 0; node < n_nodes; ++node) {
     for (int i = 0; i < 3; ++i) {
       if (is_free(node, i)) {
@@ -67,6 +68,16 @@ void SolidUnknowns::place_positions(std::span<const double> u, Eigen::Ref<Eigen:
 
 void SolidUnknowns::place_potentials(std::span<const double> u, Eigen::Ref<Eigen::VectorXd> phi) const {
   for (const PrescribedPotential& said : data_->potentials) phi[said.node] = said.value.at(u);
+}
+
+void SolidUnknowns::place_position_rates(std::span<const double> du, Eigen::Ref<Eigen::VectorXd> dx) const {
+  for (const PrescribedDisplacement& said : data_->displacements) {
+    dx[3 * static_cast<Eigen::Index>(said.node) + said.component] = said.value.rate(du);
+  }
+}
+
+void SolidUnknowns::place_potential_rates(std::span<const double> du, Eigen::Ref<Eigen::VectorXd> dphi) const {
+  for (const PrescribedPotential& said : data_->potentials) dphi[said.node] = said.value.rate(du);
 }
 
 void SolidUnknowns::keep_free_positions(Eigen::Ref<Eigen::VectorXd> rows) const {

@@ -17,7 +17,7 @@ class SolidUnknowns {
   /// `data` must outlive the object.
   explicit SolidUnknowns(const SolidDescription& data);
 
-  /// Unknowns that are not free, potentials of floating electrodes included.
+  /// Unknowns that are not free, those of tied nodes and potentials of floating electrodes included.
   const math::NodeMask& mask() const { return mask_; }
   bool is_free(int node, int unknown) const { return (mask_[static_cast<std::size_t>(node)] >> unknown & 1) == 0; }
   /// True if there is an electric field at all.
@@ -32,7 +32,10 @@ class SolidUnknowns {
   void place_positions(std::span<const double> u, Eigen::Ref<Eigen::VectorXd> x) const;
   /// Writes the prescribed entries of the potentials (n_nodes).
   void place_potentials(std::span<const double> u, Eigen::Ref<Eigen::VectorXd> phi) const;
-  /// Zeroes the entries of rows of positions that are not free.
+  /// The same for the derivatives when the controls move along `du`.
+  void place_position_rates(std::span<const double> du, Eigen::Ref<Eigen::VectorXd> dx) const;
+  void place_potential_rates(std::span<const double> du, Eigen::Ref<Eigen::VectorXd> dphi) const;
+  /// Zeroes the entries of rows of positions that are not free: prescribed or tied.
   void keep_free_positions(Eigen::Ref<Eigen::VectorXd> rows) const;
   /// Zeroes the rows of prescribed potentials; those of floating electrodes stay.
   void keep_solved_potentials(Eigen::Ref<Eigen::VectorXd> rows) const;

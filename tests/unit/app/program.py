@@ -71,10 +71,10 @@ class ProgramTest(unittest.TestCase):
         self.assertEqual(done.stdout, "")
         return done.stderr.strip()
 
-    def run_scene(self, scene, output, *arguments, **options):
-        """`run` into a file of the test's folder; returns its path."""
+    def run_scene(self, scene, output, *arguments, verb="run", **options):
+        """The verb's result in a file of the test's folder; returns its path."""
         path = SCENES / scene if isinstance(scene, str) else scene
-        self.program("run", path, "-o", output, *arguments, **options)
+        self.program(verb, path, "-o", output, *arguments, **options)
         return self.folder / output
 
     def start(self, *arguments):

@@ -19,7 +19,7 @@ class Usage(ProgramTest):
         self.assertEqual(self.message(*arguments, code=2), "error: " + sentence)
 
     def test_no_verb(self):
-        self.expect([], "give a verb: run, validate, compare, info, schema; see 'muldi-sim --help'")
+        self.expect([], "give a verb: run, optimise, check, validate, compare, info, schema, plot, report, paraview, new, explain; see 'muldi-sim --help'")
 
     def test_misspelt_verb(self):
         self.expect(["valdate", "x.yaml"], "no verb 'valdate' (did you mean 'validate'?); see 'muldi-sim --help'")
@@ -147,7 +147,7 @@ class Streams(ProgramTest):
             self.assertRegex(done.stdout, rf"(?m)^{name} \d")
 
     def test_help_goes_to_stdout(self):
-        for verb in ("run", "validate", "compare", "info", "schema"):
+        for verb in ("run", "optimise", "check", "validate", "compare", "info", "schema"):
             done = self.program(verb, "--help")
             self.assertEqual(done.stderr, "")
             self.assertIn(f"muldi-sim {verb}", done.stdout)
@@ -189,7 +189,7 @@ class UnreadableRecords(ProgramTest):
     """Every verb that reads records refuses what is none: exit code 2 with a sentence, the file untouched."""
 
     def refused(self, content, sentence):
-        good = self.run_scene("pendulum.yaml", "good.h5")
+        good = self.run_scene("pendulum.yaml", "good.h5", "--no-paraview")
         bad = self.folder / "bad.h5"
         if content is not None:
             bad.write_bytes(content if isinstance(content, bytes) else content(good))
@@ -217,12 +217,12 @@ class UnreadableRecords(ProgramTest):
         self.refused(b"muldi: 1\n", "not an HDF5 file")
 
     def test_truncated(self):
-        size = self.run_scene("pendulum.yaml", "good.h5").stat().st_size
+        size = self.run_scene("pendulum.yaml", "good.h5", "--no-paraview").stat().st_size
         (self.folder / "good.h5").unlink()
         self.refused(lambda good: good.read_bytes()[:2000], f"truncated, it has 2000 of {size} bytes")
 
     def test_any_damaged_byte_range_is_no_crash(self):
-        good = self.run_scene("pendulum.yaml", "good.h5")
+        good = self.run_scene("pendulum.yaml", "good.h5", "--no-paraview")
         whole = good.read_bytes()
         step = len(whole) // 40
         for begin in range(48, len(whole), step):

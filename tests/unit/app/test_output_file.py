@@ -13,8 +13,10 @@ TRUNK = SCENES / "elephant_trunk_lumped.yaml"
 
 class Names(ProgramTest):
     def test_the_default_is_the_stem_of_the_scene_in_the_current_folder(self):
-        self.program("run", PENDULUM)
+        self.program("run", PENDULUM, "--no-paraview")
         self.assertEqual([path.name for path in self.folder.iterdir()], ["pendulum.h5"])
+        self.program("run", PENDULUM, "--force")
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["pendulum.h5", "pendulum.xdmf"])
 
     def test_output_names_another_file(self):
         (self.folder / "sub").mkdir()

@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 """What a process records of solids, and how it goes on: test_solids.py MULDI_SIM."""
 
+import pathlib
 import unittest
 import xml.etree.ElementTree
 
 import h5py
 
 from program import BrokenRuns, ProgramTest, attribute, options, values
+from xdmf_check import check_side_file
 
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 SCENE = """\
 muldi: 1
 title: Actuator of one cube
@@ -34,47 +37,11 @@ dynamics: {duration: 0.1, step: 0.005}
 """
 ALL_FIELDS = "[position, velocity, potential, pressure, stress, field, true_field, jacobian]"
 RECORD = f"record: {{every: 2, fields: {{cube: {{fields: {ALL_FIELDS}, every: 3}}}}, probes: {{r: {{reaction: cube@y-}}}}}}\n"
-NODES, CELLS = 27, 8
 
 
 class SideFile(BrokenRuns):
     def check(self, path):
-        """Parses a side file and looks up everything that it refers to; returns name, times and fields of each grid."""
-        found = []
-        for collection in xml.etree.ElementTree.parse(path).findall("./Domain/Grid"):
-            self.assertEqual((collection.get("GridType"), collection.get("CollectionType")), ("Collection", "Temporal"))
-            times = []
-            for row, grid in enumerate(collection.findall("Grid")):
-                times.append(float(grid.find("Time").get("Value")))
-                topology, geometry = grid.find("Topology"), grid.find("Geometry")
-                self.assertEqual((topology.get("TopologyType"), topology.get("NumberOfElements")), ("Hexahedron", str(CELLS)))
-                self.assertEqual(geometry.get("GeometryType"), "XYZ")
-                self.check_item(topology.find("DataItem"), row, (CELLS, 8))
-                self.check_item(geometry.find("DataItem"), row, (NODES, 3))
-                fields = {}
-                for item in grid.findall("Attribute"):
-                    n = {"Node": NODES, "Cell": CELLS}[item.get("Center")]
-                    width = {"Scalar": (), "Vector": (3,), "Matrix": (6,)}[item.get("AttributeType")]
-                    self.check_item(item.find("DataItem"), row, (n, *width))
-                    fields[item.get("Name")] = item.get("Center")
-            found.append((collection.get("Name"), times, fields))
-        return found
-
-    def check_item(self, item, row, shape):
-        self.assertEqual(tuple(map(int, item.get("Dimensions").split())), shape)
-        if item.get("ItemType") == "HyperSlab":
-            selection, item = item.findall("DataItem")
-            rank = len(shape) + 1
-            numbers = list(map(int, selection.text.split()))
-            self.assertEqual(tuple(map(int, selection.get("Dimensions").split())), (3, rank))
-            self.assertEqual(numbers, [row, *[0] * (rank - 1), *[1] * rank, 1, *shape])
-        file, path = item.text.split(":")
-        with h5py.File(self.folder / file, "r") as opened:
-            data = opened[path]
-            self.assertEqual(data.shape, tuple(map(int, item.get("Dimensions").split())))
-            self.assertEqual((data.dtype.kind, data.dtype.itemsize), ({"Int": "i", "Float": "f"}[item.get("NumberType")], int(item.get("Precision"))))
-            if data.ndim > len(shape):
-                self.assertLess(row, data.shape[0])
+        return check_side_file(self, path)
 
     def test_every_reference_of_the_side_file_exists(self):
         output = self.run_scene(self.write("a.yaml", SCENE + RECORD), "a.h5")
@@ -84,7 +51,7 @@ class SideFile(BrokenRuns):
         self.assertEqual([round(t, 12) for t in times], [0, 0.03, 0.06, 0.09, 0.1])
         self.assertEqual(
             fields,
-            {"velocity": "Node", "potential": "Node", "reference": "Node", "pressure": "Cell", "stress": "Cell", "field": "Cell"}
+            {"velocity": "Node", "potential": "Node", "reference": "Node", "displacement": "Node", "pressure": "Cell", "stress": "Cell", "field": "Cell"}
             | {"true_field": "Cell", "jacobian": "Cell"},
         )
 
@@ -155,6 +122,23 @@ class GoesOn(BrokenRuns):
             self.assertLess(difference, 1e-5 * abs(values(whole, path)).max(), name)
 
 
+class MuscleFields(BrokenRuns):
+    def test_a_muscle_of_finite_elements_has_fields_as_a_solid_has(self):
+        twin = (ROOT / "scenes" / "revolute_joint_twin.yaml").read_text().replace("record: {every: 5}\n", "")
+        scene = self.write("twin.yaml", twin + "record: {every: 2, fields: {upper: [position, pressure]}}\n")
+        short = options(["dynamics.duration=4 ms", "statics.steps=1"])
+        self.program("run", scene, *short, "-o", "fe.h5")
+        with h5py.File(self.folder / "fe.h5") as file:
+            self.assertEqual(file["solids/upper/position"].shape, (3, 216, 3))
+            self.assertEqual(file["solids/upper/pressure"].shape, (3, 92))
+            self.assertNotIn("lower", file["solids"])
+        grids = xml.etree.ElementTree.parse(self.folder / "fe.xdmf").getroot().findall(".//Grid[@GridType='Collection']")
+        self.assertEqual([grid.get("Name") for grid in grids], ["upper", "bodies", "muscles"])
+        lumped = options(["muscles.upper.model=lumped", "muscles.lower.model=lumped"])
+        said = self.program("run", scene, *short, *lumped, "-o", "lumped.h5").stderr
+        self.assertIn("warning: record.fields.upper: muscle 'upper' has no mesh, only those of model fe have", said)
+
+
 class Validate(ProgramTest):
     def test_tells_what_a_solid_is_made_of(self):
         summary = self.program("validate", self.write("a.yaml", SCENE)).stdout
@@ -164,6 +148,24 @@ class Validate(ProgramTest):
             "    free positions 54, unknown potentials 1, element pressures 8\n"
             "    viscous terms yes, mass yes\n"
             "    solver ",
+            summary,
+        )
+
+    def test_counts_the_trunk_as_the_thesis_does(self):
+        trunk = ROOT / "scenes" / "elephant_trunk_fe.yaml"
+        summary = self.program("validate", trunk).stdout
+        self.assertIn("bodies 6, joints 6, muscles 12 (fe), isolated actuators 0,", summary)
+        self.assertIn(
+            "  muscle m3: 475 nodes, 288 cells, incompressible\n"
+            "    free positions 1275, 150 eliminated by ties to segment1 segment2, no unknown potentials (all are prescribed), "
+            "element pressures 288\n",
+            summary,
+        )
+        # Thesis: 3456 cells, 33168 unknowns with potentials and three fields a cell, 1650 eliminated.
+        self.assertIn(
+            "  all 12 meshes: 5700 nodes, 3456 cells; unknowns 18756 = 15300 positions + 0 potentials + 3456 pressures; "
+            "1650 eliminated by ties, 150 prescribed\n"
+            "    with all positions, potentials and three fields a cell they would be 33168\n",
             summary,
         )
 

@@ -93,6 +93,40 @@ TEST(SolidLimits, AnInvertedStartNamesItsCell) {
   EXPECT_EQ(report.inadmissible, "solid 'box': cell 7 is inverted (det F -0.617)");
 }
 
+TEST(SolidLimits, ALoadTooLargeForOneStepLeavesTheStateAndIsReported) {
+  const test::SolidSystem system = pressed(1e3, Formulation::displacement);
+  const auto model = test::make_model(system);
+  statics::StaticState state = test::static_start(*model);
+  const Eigen::VectorXd start = state.q;
+  const statics::EquilibriumReport report =
+      statics::EquilibriumSolver(*model, {}).solve(state, std::vector<double>{1e3});
+  EXPECT_FALSE(report.converged);
+  EXPECT_TRUE(state.q == start);
+
+  statics::Sweep sweep(*model, {0.0}, {1.0}, {.from = 1e3, .to = 2e3, .steps = 2});
+  const statics::SweepResult result = sweep.run(state, {});
+  EXPECT_EQ(result.end, statics::SweepResult::End::loss_of_equilibrium);
+  EXPECT_EQ(result.sentence, "no stable equilibrium at the first load");
+}
+
+TEST(SolidLimits, AnEquilibriumHoldsWhatIsPrescribed) {
+  test::SolidSystem system = test::solid_box({2, 2, 2}, {0, 0, 0}, {1, 1, 1});
+  system.hold_lower_faces();
+  const fem::Value value = system.control(0.0);
+  system.hold(test::plane(0, 1.0), 0, value);
+  system.set_potential(test::plane(2, 0.0), {});
+  system.set_potential(test::plane(2, 1.0), value);
+  fem::Material material = test::rubber(mu, 10.0, Formulation::displacement);
+  material.electric = fem::IdealDielectric{.permittivity = 3e-11};
+  system.fill(material, mu, Formulation::displacement);
+  const auto model = test::make_model(system);
+  statics::StaticState state = test::static_start(*model);
+  ASSERT_TRUE(statics::EquilibriumSolver(*model, {}).solve(state, std::vector<double>{0.25}).converged);
+  const int corner = system.node_at({1, 1, 1});
+  EXPECT_DOUBLE_EQ(state.q[3 * corner], 1.25);
+  EXPECT_DOUBLE_EQ(state.y[corner], 0.25);
+}
+
 TEST(SolidLimits, AColumnBucklesAtEulersLoad) {
   const int n = 2;
   test::SolidSystem system = test::solid_box({n, n, 12 * n}, {0, 0, 0}, {1, 1, 12});

@@ -128,6 +128,16 @@ TEST(SolidMotion, ProbesReachFromBodiesToSolids) {
   EXPECT_NEAR(run.value("probes/speed"), 3.0, 1e-12);
 }
 
+TEST(SolidMotion, CellsInvertedAtTheEndOfAStepAreReported) {
+  // From a height of 2 to -0.5 in one step: the middle, 0.75, is admissible.
+  const SceneRun run(cube(rubber,
+                          "    conditions:\n      - {where: y-, displacement: [0, 0, 0]}\n"
+                          "      - {where: y+, displacement: [0, {table: [[0, 0], [0.1, -2.5]]}, 0]}\n",
+                          "dynamics: {duration: 0.1, step: 0.1}\n", "[1, 1, 1]"));
+  ASSERT_EQ(run.warnings().size(), 1U);
+  EXPECT_EQ(run.warnings()[0], "at t = 0.1: solid 'cube': cell 0 is inverted (det F -0.25)");
+}
+
 TEST(SolidMotion, ASolidThatInvertsSaysSo) {
   const SceneRun run(cube(rubber,
                           "    conditions:\n      - {where: y-, displacement: [0, 0, 0]}\n"

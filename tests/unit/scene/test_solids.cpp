@@ -188,7 +188,7 @@ TEST(Solids, ResolvedTextHoldsTheDefaults) {
 TEST(Solids, FormulationFollowsTheMaterial) {
   const Scene scene = scene_of(good(rich));
   const auto of = [&](const char* solid, const char* material) {
-    return formulation_of(scene.solids.find(solid)->value, scene.materials.find(material)->value);
+    return formulation_of(scene.solids.find(solid)->value.formulation, scene.materials.find(material)->value);
   };
   EXPECT_EQ(of("bar", "silicone"), Formulation::incompressible);
   EXPECT_EQ(of("bar", "gel"), Formulation::mean_dilatation);

@@ -1,0 +1,85 @@
+#include "build/build_ties.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "build/place_bodies.hpp"
+
+namespace muldi::build {
+namespace {
+
+/// Index of the body among the hosts of the solid, which it becomes if it is none.
+int host_of(int body, const std::string& name, fem::SolidDescription& data) {
+  for (std::size_t i = 0; i < data.hosts.size(); ++i) {
+    if (data.hosts[i].pattern_node == body) return static_cast<int>(i);
+  }
+  data.hosts.push_back({.name = name, .pattern_node = body, .first = 12 * static_cast<Eigen::Index>(body)});
+  return static_cast<int>(data.hosts.size()) - 1;
+}
+
+}  // namespace
+
+const int* TieBuilder::body_of(int node) const {
+  const auto found = body_of_node_.find(node);
+  return found == body_of_node_.end() ? nullptr : &found->second;
+}
+
+std::string TieBuilder::name_of(int body) const {
+  return body == multibody::ground ? std::string(scene::ground) : scene_.bodies[static_cast<std::size_t>(body)].name;
+}
+
+void TieBuilder::add(int node, int body) {
+  body_of_node_.emplace(node, body);
+  auto group = std::find_if(groups_.begin(), groups_.end(), [&](const TiedNodes& one) { return one.body == body; });
+  if (group == groups_.end()) group = groups_.insert(group, {.body = body, .name = name_of(body)});
+  group->nodes.push_back(node);
+  if (body == multibody::ground) {
+    data_.tied_to_ground = true;
+    return;
+  }
+  const multibody::Pose& pose = poses_[static_cast<std::size_t>(body)];
+  const Eigen::Vector3d x = data_.X.segment<3>(3 * static_cast<Eigen::Index>(node));
+  data_.ties.push_back({.node = node,
+                        .host = host_of(body, group->name, data_),
+                        .xi = pose.orientation.transpose() * (x - pose.position)});
+}
+
+TieWrench wrench_on(const fem::Solid& solid, const TiedNodes& group, const model::NodeView& at) {
+  // What a tie does to its node, it takes from the body.
+  const auto on_nodes = solid.positions(at.constraint_force);
+  const auto x = solid.positions(at.q);
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  if (group.body != multibody::ground) centre = at.q.segment<3>(12 * static_cast<Eigen::Index>(group.body));
+  TieWrench wrench;
+  for (const int node : group.nodes) {
+    const Eigen::Index first = 3 * static_cast<Eigen::Index>(node);
+    const Eigen::Vector3d force = -on_nodes.segment<3>(first);
+    const Eigen::Vector3d lever = x.segment<3>(first) - centre;
+    wrench.force += force;
+    wrench.moment += lever.cross(force);
+  }
+  return wrench;
+}
+
+void add_tie_observables(const std::string& owner, const fem::Solid& solid, const TiedNodes& group,
+                         model::Model& model) {
+  const std::string folder = "ties/" + owner + "." + group.name + "/";
+  const auto add = [&](const char* what, base::Dimension unit, std::string doc, auto part) {
+    model.observables.push_back({.path = folder + what,
+                                 .shape = {3},
+                                 .unit = unit,
+                                 .doc = std::move(doc),
+                                 .evaluate = [&solid, &group, part](const model::NodeView& at, std::span<double> out) {
+                                   const Eigen::Vector3d value = wrench_on(solid, group, at).*part;
+                                   std::copy(value.data(), value.data() + 3, out.begin());
+                                 }});
+  };
+  const bool on_ground = group.body == multibody::ground;
+  add("force", base::dimension::force, "force on " + group.name + " through its ties, world axes", &TieWrench::force);
+  add("moment", base::dimension::torque,
+      "moment on " + group.name + " through its ties about " + (on_ground ? "the origin" : "its centre of mass") +
+          ", world axes",
+      &TieWrench::moment);
+}
+
+}  // namespace muldi::build

@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""The verb optimise, its results and failures; check --derivatives: test_optimise.py MULDI_SIM."""
+
+import os
+import unittest
+
+import h5py
+
+from program import SCENES, ProgramTest, attribute, options, values
+
+JOINT = SCENES / "revolute_joint_optimal.yaml"
+SLIDER = SCENES / "double_integrator_optimal.yaml"
+
+
+class Optimise(ProgramTest):
+    def test_writes_the_ordinary_groups_the_optimum_and_the_replay(self):
+        done = self.program("optimise", JOINT, "-o", "a.h5")
+        self.assertIn("stage 1 of 1, effort: optimal after", done.stdout)
+        self.assertIn("sum of squared fields 5763.865", done.stdout)
+        self.assertRegex(done.stdout, r"replay less optimum +largest +at the end +afterwards\njoints/hinge +")
+        output = self.folder / "a.h5"
+        self.assertEqual(attribute(output, "status"), "completed")
+        self.assertEqual(values(output, "time").shape, (21,))
+        self.assertEqual(values(output, "controls/agonist").shape, (21,))
+        self.assertEqual(values(output, "replay/time")[-1], 1000.0)
+        self.assertEqual(attribute(output, "status", "optimum/1"), "optimal")
+        self.assertGreater(len(values(output, "optimum/1/iterates/iteration")), 2)
+        self.assertAlmostEqual(float(values(output, "optimum/1/sum_squared_field")), 5763.8653, delta=0.006)
+        self.assertLess(abs(values(output, "solver/residual")).max(), 1e-6)
+        self.program("info", "a.h5")
+
+    def test_has_an_american_name(self):
+        self.program("optimize", SLIDER, "-o", "a.h5")
+
+    def test_needs_something_to_optimise(self):
+        pendulum = SCENES / "pendulum.yaml"
+        message = self.message("optimise", pendulum, code=2)
+        self.assertEqual(message, f"{pendulum}: error: nothing to optimise: give `optimal_control:`")
+        message = self.message("run", SLIDER, code=2)
+        self.assertEqual(
+            message, f"{SLIDER}: error: nothing to run: give `statics:` or `dynamics:`; for `optimal_control:` there is the verb optimise"
+        )
+
+    def test_goes_on_from_an_unfinished_result_with_another_step(self):
+        stages = "optimal_control.stages=[{minimise: {effort: {scale: 1.0e-14}}, max_iterations: 3}]"
+        done = self.program("optimise", JOINT, "-o", "a.h5", "--set", stages, code=3)
+        self.assertIn("iteration_limit", done.stderr)
+        self.assertEqual(attribute(self.folder / "a.h5", "status"), "iteration_limit")
+        self.assertEqual(values(self.folder / "a.h5", "time").shape, (21,))
+        guess = f"optimal_control.guess={{from: {self.folder / 'a.h5'}}}"
+        self.program("optimise", JOINT, "-o", "b.h5", *options([guess, "optimal_control.step=5"]))
+        self.assertEqual(values(self.folder / "b.h5", "time").shape, (41,))
+
+    def test_says_where_an_infeasible_problem_fails(self):
+        done = self.program("optimise", SLIDER, "-o", "a.h5", "--set", "optimal_control.controls.push.max=0.01", code=3)
+        self.assertIn("error: infeasible", done.stderr)
+        self.assertIn("largest violation: ", done.stdout)
+        self.assertEqual(attribute(self.folder / "a.h5", "status"), "infeasible")
+        with h5py.File(self.folder / "a.h5") as file:
+            self.assertNotEqual(file["optimum/1"].attrs["worst_constraint"], "")
+
+    def test_refuses_a_target_out_of_reach_before_the_solve(self):
+        target = "optimal_control.final={points: {pendulum.upper: [300, 0, 0]}, momentum: rest}"
+        for verb in ("optimise", "validate"):
+            message = self.message(verb, JOINT, "--set", target, code=2)
+            self.assertIn("optimal_control.final.points", message)
+
+    def test_interrupted_keeps_the_best_iterate(self):
+        guess = "optimal_control.guess={random: {starts: 1000, seed: 1}}"
+        process = self.start("optimise", SCENES / "elephant_trunk_optimal.yaml", "-o", "a.h5", "--set", guess)
+        code = self.interrupt(process, self.folder / "a.h5", 0.5)
+        self.assertEqual(code, 130, self.said())
+        self.assertEqual(attribute(self.folder / "a.h5", "status"), "interrupted")
+        self.assertEqual(values(self.folder / "a.h5", "time").shape, (41,))
+        self.assertEqual(values(self.folder / "a.h5", "optimum/trajectory/coordinates").shape[0], 41)
+
+
+class SolverLibrary(ProgramTest):
+    """LD_DEBUG makes the loader say which libraries it opens."""
+
+    def opened(self, *arguments):
+        done = self.program(*arguments, env={**os.environ, "LD_DEBUG": "files"})
+        return "libipopt" in done.stderr
+
+    def test_is_opened_by_optimise_alone(self):
+        self.assertFalse(self.opened("run", SCENES / "pendulum.yaml", "-o", "a.h5", "--set", "dynamics.duration=10 ms"))
+        self.assertTrue(self.opened("optimise", SLIDER, "-o", "b.h5"))
+
+
+class Derivatives(ProgramTest):
+    def test_of_every_kind_of_scene_are_right(self):
+        for scene in ("revolute_joint_lumped", "four_bar", "slider_crank", "slack_cable", "cube", "round_actuator_lumped", "revolute_joint_optimal",
+                      "four_bar_optimal"):
+            with self.subTest(scene=scene):
+                small = ["--set", "solids.cube.mesh.box.cells=[2, 2, 2]"] if scene == "cube" else []
+                done = self.program("check", "--derivatives", SCENES / f"{scene}.yaml", *small)
+                self.assertRegex(done.stdout, r"\n[1-9]\d* derivatives, 0 wrong\n$")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+"""Scenes as an editor sees them: test_schema.py MULDI_SIM. Every scene and every snippet of the README is valid by the JSON Schema."""
+
+import json
+import re
+import unittest
+
+import jsonschema
+import yaml
+
+from program import ROOT, SCENES, ProgramTest
+
+MODELINE = re.compile(r"# yaml-language-server: \$schema=(\S+)")
+
+
+def scene_files():
+    return [*sorted(SCENES.glob("*.yaml")), *sorted((ROOT / "tests" / "golden" / "si").glob("*.yaml"))]
+
+
+class Schema(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        schema = json.loads(self.program("schema").stdout)
+        jsonschema.Draft7Validator.check_schema(schema)
+        self.validator = jsonschema.Draft7Validator(schema)
+
+    def problems(self, text):
+        """What an editor would underline."""
+        return [f"{'.'.join(map(str, error.absolute_path))}: {error.message}" for error in self.validator.iter_errors(yaml.safe_load(text))]
+
+    def test_every_scene_is_valid(self):
+        self.assertGreater(len(scene_files()), 20)
+        for path in scene_files():
+            self.assertEqual(self.problems(path.read_text()), [], path.name)
+
+    def test_every_scene_names_its_schema(self):
+        for path in scene_files():
+            named = MODELINE.match(path.read_text())
+            self.assertTrue(named, path.name)
+            self.assertEqual((path.parent / named.group(1)).resolve(), ROOT / "schemas" / "scene.schema.json", path.name)
+
+    def test_every_snippet_of_the_readme_is_valid_and_runs_through_the_reader(self):
+        snippets = re.findall(r"```yaml\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+        self.assertGreaterEqual(len(snippets), 1)
+        for number, text in enumerate(snippets):
+            self.assertEqual(self.problems(text), [], f"snippet {number}")
+            self.program("validate", self.write(f"snippet{number}.yaml", text))
+
+    def test_starter_scenes_are_valid(self):
+        for kind in ("joint", "muscle", "trunk", "solid"):
+            self.assertEqual(self.problems(self.program("new", kind).stdout), [], kind)
+
+    def test_mistakes_are_found(self):
+        text = (SCENES / "revolute_joint_lumped.yaml").read_text()
+        for right, wrong, problem in (
+            ("mass: 40 g", "maas: 40 g", "bodies.pendulum: Additional properties are not allowed ('maas' was unexpected)"),
+            ("type: revolute, from", "from", "joints.hinge: 'type' is a required property"),
+            ("poisson: 0.5", "poisson: 0.7", "materials.silicone.elastic.poisson: 0.7 is greater than the maximum of 0.5"),
+        ):
+            self.assertIn(right, text)
+            self.assertIn(problem, self.problems(text.replace(right, wrong)))
+
+
+if __name__ == "__main__":
+    unittest.main()
