@@ -95,6 +95,7 @@ control::Trajectory recorded_trajectory(const scene::Scene& scene, const control
   found.step = file.read(folder + "step").values.at(0);
   const auto as_vectors = [](const std::vector<std::vector<double>>& rows) {
     std::vector<Eigen::VectorXd> vectors;
+    vectors.reserve(rows.size());
     for (const std::vector<double>& row : rows) {
       vectors.emplace_back(Eigen::Map<const Eigen::VectorXd>(row.data(), static_cast<Eigen::Index>(row.size())));
     }

@@ -284,7 +284,7 @@ class ProblemBuilder {
 /// Where an entry below the section was written: the deepest that is known, else the section.
 scene::Origin origin_of(const scene::Scene& scene, const std::string& below) {
   const scene::OptimalControl& said = *scene.optimal_control;
-  const std::string path = "optimal_control." + below;
+  const std::string path = below.empty() ? "optimal_control" : "optimal_control." + below;
   scene::Origin best = said.origin;
   std::size_t longest = 0;
   const auto consider = [&](const scene::Origin& origin) {

@@ -260,6 +260,9 @@ void OptimalControlCheck::stage(const Stage& stage) {
   if (const auto& tracking = stage.minimise.get<TrackingObjective>();
       tracking && tracking->options.joints.empty() && tracking->options.points.empty()) {
     refuse(TrackingObjective::name, "give joints or points, or both");
+  } else if (tracking && problem_.duration.is_free()) {
+    refuse(TrackingObjective::name,
+           "follows functions of time, in which a free duration moves the nodes: fix the duration, or leave it out");
   }
   if (const auto& terminal = stage.minimise.get<TerminalObjective>();
       terminal && terminal->options.joints.empty() && terminal->options.points.empty()) {
