@@ -53,7 +53,7 @@ const std::string rich =
     "statics: {control: e, to: 50 kV/mm, steps: 25, continuation: arc_length}\n"
     "dynamics: {duration: 1, step: 1 ms}\n"
     "optimal_control:\n"
-    "  duration: {min: 1, max: 2}\n"
+    "  duration: 2\n"
     "  steps: 20\n"
     "  controls: {push: {min: -1}, e: {max: 50 kV/mm}}\n"
     "  initial: {joints: {rail: [0, ~], ball: [1, 2, 3]}, momentum: {rail: [1, 2]}}\n"
@@ -64,7 +64,7 @@ const std::string rich =
     "  guess: {simulate: {push: {sine: {amplitude: 1, frequency: 2}}, e: 30 kV/mm}}\n"
     "  stages:\n"
     "    - {minimise: {feasibility: 1}, max_iterations: 7}\n"
-    "    - {minimise: {effort: {scale: 1e-14}, rate: 0.1, final_time: {weight: 2}, peak_field: 3, kinetic_energy: 4,\n"
+    "    - {minimise: {effort: {scale: 1e-14}, rate: 0.1, peak_field: 3, kinetic_energy: 4,\n"
     "                  tracking: {joints: {rail: [{table: [[0, 1], [1, 2]]}, ~]}, points: {a.p: [1, ~, {ramp: {to: 3, "
     "over: 1}}]}},\n"
     "                  terminal: {joints: {rail: [1, ~]}, points: {a.p: [~, 1, ~]}}}}\n"
@@ -72,6 +72,18 @@ const std::string rich =
     "kV/mm}}}\n"
     "record: {every: 10, points: [a.p]}\n"
     "solver: {tolerance: 1e-9, max_iterations: 7, linear: tree}\n";
+
+TEST(ResolvedText, OfAFreeDurationReadsBackEqual) {
+  std::string text = rich;
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("duration: 2\n", "duration: {min: 1, max: 2}\n");
+  replace("rate: 0.1,", "rate: 0.1, final_time: {weight: 2},");
+  text.erase(text.find("tracking:"), text.find("terminal:") - text.find("tracking:"));
+  const Scene scene = scene_of(text);
+  EXPECT_TRUE(read_scene_text(resolved_text(scene), "resolved.yaml") == scene);
+}
 
 TEST(ResolvedText, ReadsBackEqual) {
   const Scene scene = scene_of(rich);
