@@ -14,6 +14,7 @@ constexpr int max_halvings = 30;
 constexpr double line_search_goal = 0.9;  // |work of the residual along the increment| relative to the start
 constexpr double free_motion = 1e-11;     // smallest over largest eigenvalue of a motion without stiffness
 constexpr double round_off_residual = 1e-12;
+constexpr double no_load = 1e-6;  // relative residual of an equilibrium where only round-off acts
 
 /// Columns that span the motions which the loop rows allow.
 Eigen::MatrixXd admissible_motions(const Eigen::MatrixXd& B, Eigen::Index n_v) {
@@ -47,7 +48,7 @@ EquilibriumSolver::EquilibriumSolver(const model::Model& model, EquilibriumOptio
   forces_.momentum = q_;
   forces_.on_rates = r_;
   if (parts_.empty()) return;
-  forces_.begin = forces_.end = step_.q = q_;
+  forces_.begin = forces_.end = step_.q = before_ = excess_ = q_;
   forces_.stage = y_ = step_.y = Eigen::VectorXd::Zero(model.n_y());
 }
 
@@ -172,10 +173,10 @@ double EquilibriumSolver::predict(StaticState& state, std::span<const double> u)
   parts_.eliminate(bracket_, forces_.stage, K_);
   manifold_.project(*frame_, bracket_, r_);
   newton_increment();
-  const double size = parts_.size_of(step_.q, step_.y).largest();
+  const double size = std::max(parts_.deformation(q_, step_.q), parts_.size_of(step_.q, step_.y).stage);
   if (!(size <= longest_increment)) return size;
   StaticState moved = state;
-  move(state, 1.0, step_, moved);
+  swing(state, 1.0, step_, moved);
   state = std::move(moved);
   return size;
 }
@@ -247,15 +248,17 @@ EquilibriumReport EquilibriumSolver::iterate(StaticState& state, std::span<const
     measure_residual();
     report.residual = residual_;
     const bool stagnates = report.iterations > 3 && size > 0.5 * previous && report.residual < round_off_residual;
+    previous = size;
     if (size <= options_.tolerance || stagnates) {
       report.converged = true;
       break;
     }
-    previous = size;
   }
   if (!report.converged) return report;
   linearise(at, u);
   report.stability = stability();
+  // Where no load acts all forces are round-off, and so is their ratio: the increment says how far the state is off.
+  if (report.residual > no_load) report.residual = std::min(report.residual, previous);
   settle(at);
   state = at;
   return report;

@@ -207,6 +207,12 @@ model::IncrementSize Solid::size_of(const Eigen::VectorXd& dq, const Eigen::Vect
   return size;
 }
 
+double Solid::deformation(const Eigen::VectorXd& q, const Eigen::VectorXd& dq) const {
+  force_ = positions(dq);
+  ties_.add_shared(q_.first, q, dq, -1.0, force_);
+  return force_.lpNorm<Eigen::Infinity>() / size_;
+}
+
 Eigen::Vector3d Solid::centre_of_mass(const Eigen::VectorXd& q) const {
   const Eigen::VectorXd& mass = loads_.nodal_mass();
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();

@@ -1,4 +1,5 @@
 /// Energies and work of a solid, and what makes a configuration inadmissible.
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "base/text.hpp"
@@ -6,6 +7,25 @@
 
 namespace muldi::fem {
 namespace {
+
+/// How the nodes that are tied to a host leave the solid free to turn about them; empty if they do not.
+std::string loose_tie(const SolidDescription& data, int host) {
+  constexpr double on_a_line = 1e-6;  // distance from it over the length
+  std::vector<Eigen::Vector3d> nodes;
+  nodes.reserve(data.ties.size());
+  for (const Tie& tie : data.ties) {
+    if (tie.host == host) nodes.emplace_back(data.X.segment<3>(3 * static_cast<Eigen::Index>(tie.node)));
+  }
+  if (nodes.size() == 1) return "by a single node, about which it turns as on a ball joint";
+  Eigen::Vector3d span = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& x : nodes) {
+    if ((x - nodes[0]).norm() > span.norm()) span = x - nodes[0];
+  }
+  for (const Eigen::Vector3d& x : nodes) {
+    if (span.normalized().cross(x - nodes[0]).norm() > on_a_line * span.norm()) return {};
+  }
+  return "by nodes on one line, about which it turns as on a hinge";
+}
 
 /// The number of a cell as its user knows it.
 std::string cell_label(const SolidDescription& data, int cell) {
@@ -21,13 +41,21 @@ bool Solid::is_viscous() const {
 }
 
 std::string Solid::note() const {
+  std::string text;
+  for (int host = 0; host < ties_.n_hosts(); ++host) {
+    const std::string how = loose_tie(data_, host);
+    if (how.empty()) continue;
+    text += base::format("{}solid '{}' is tied to body '{}' {}; tie nodes that span a face to clamp it",
+                         text.empty() ? "" : "; ", data_.name, data_.hosts[static_cast<std::size_t>(host)].name, how);
+  }
   // A constant pressure on a solid that is held all around is no pattern of the mesh.
-  if (filter_.n_patterns() <= 1) return {};
-  return base::format(
-      "solid '{}' is held in such a way that {} patterns of element pressures, checkerboards among them, exert no "
-      "force: "
-      "they are filtered out of the pressures, and the volume is kept of groups of cells instead of every single one",
-      data_.name, filter_.n_patterns());
+  if (filter_.n_patterns() <= 1) return text;
+  return text + (text.empty() ? "" : "; ") +
+         base::format(
+             "solid '{}' is held in such a way that {} patterns of element pressures, checkerboards among them, exert "
+             "no force: they are filtered out of the pressures, and the volume is kept of groups of cells instead of "
+             "every single one",
+             data_.name, filter_.n_patterns());
 }
 
 model::IntervalWork Solid::work(const model::IntervalPoint& at) const {

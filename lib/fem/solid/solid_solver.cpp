@@ -13,11 +13,8 @@ constexpr double augmentation = 3e2;
 /// The same where patterns of pressures are filtered out, against which it works in vain.
 constexpr double filtered_augmentation = 30.0;
 constexpr double pi = 3.14159265358979323846;
-constexpr int max_refinements = 60;
 constexpr double accuracy_at_rest = 1e-6;
 constexpr int max_exact_iterations = 60;
-/// Part of the factor's compliance that is left in the volume rows of an increment; it vanishes with the increment.
-constexpr double proximal = 1e-9;
 
 std::vector<std::vector<int>> electrodes_in(const Solid& solid, model::Linearisation kind) {
   std::vector<std::vector<int>> nodes;
