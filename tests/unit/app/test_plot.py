@@ -48,6 +48,16 @@ class Plot(ProgramTest):
         self.assertEqual([found.count(text) for text in ("a", "b", "upper")], [8, 8, 6])
         self.assertEqual(figures[0], figures[1])
 
+    def test_shows_the_exchange_of_energies_that_a_field_at_rest_would_hide(self):
+        self.run_scene("revolute_joint_fe.yaml", "a.h5", "--no-progress", *options(["dynamics.duration=20"]))
+        self.program("plot", "a.h5", "--what", "energy")
+        found = texts(self.folder / "a.svg")
+        self.assertIn("Energy exchange", found)
+        self.assertIn("change of energy (mJ)", found)
+        self.run_scene("pendulum.yaml", "b.h5", "--no-progress")
+        self.program("plot", "b.h5", "--what", "energy")
+        self.assertNotIn("Energy exchange", texts(self.folder / "b.svg"))
+
     def test_shows_where_equilibria_are_unstable(self):
         self.run_scene("pull_in.yaml", "a.h5")
         self.program("plot", "a.h5", "--what", "muscles", "-o", "a.svg")
