@@ -83,8 +83,7 @@ void EquilibriumSolver::move(const StaticState& start, double factor, const Stat
   trial.y = start.y + factor * along.y;
 }
 
-void EquilibriumSolver::swing(const StaticState& start, double factor, const StaticMotion& along,
-                              StaticState& trial) {
+void EquilibriumSolver::swing(const StaticState& start, double factor, const StaticMotion& along, StaticState& trial) {
   move(start, factor, along, trial);
   if (parts_.empty()) return;
   // Where the bodies go beyond the first order.
