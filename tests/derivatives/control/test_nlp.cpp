@@ -184,6 +184,43 @@ TEST(Nlp, DerivativesOfForcesOnLoopClosingJoints) {
   expect_clean(at.problem, test::feasibility(), resting_guess(at.problem, 5.0));
 }
 
+TEST(Nlp, DerivativesOfLimitsOnTurns) {
+  // A ball whose references differ from node to node, and angles.
+  ControlCase ball(test::driven_free_body());
+  ball.set_horizon(3, 2.0);
+  ball.seek_plain(1.0);
+  ball.start_at_rest();
+  ball.problem.final.momentum.kind = MomentumCondition::Kind::free;
+  ball.problem.limits.longest_turn = 1.0;
+  const std::vector<std::vector<double>> turning(3, {0.0, 0.0, 0.0, 0.5, 0.2, 0.4});
+  expect_clean(ball.problem, test::feasibility(), simulate_guess(ball.problem, 2.0, turning));
+  ControlCase joint = test::joint_case(3, 10.0);
+  joint.problem.limits.longest_turn = 1.0;
+  expect_clean(joint.problem, test::feasibility(), resting_guess(joint.problem, 10.0));
+}
+
+TEST(TurnRows, OfABallAreTheRotationBetweenTheNodesWhateverTheirReferences) {
+  ControlCase at(test::driven_free_body());
+  at.set_horizon(1, 2.0);
+  at.start_at_rest();
+  const model::Manifold& manifold = *at.model->manifold;
+  Trajectory guess = resting_guess(at.problem, 2.0);
+  Eigen::VectorXd turn = Eigen::VectorXd::Zero(6);
+  turn.tail<3>() = Vector3d(0.3, -0.5, 0.4);
+  manifold.retract(guess.x[0], turn, guess.x[1]);
+  Layout layout{.n_steps = 1, .n_v = 6};
+  layout.place_nodes();
+  DiscreteDynamics dynamics(at.problem, layout, guess);
+  // Both nodes lie in their references.
+  Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(layout.n);
+  ASSERT_TRUE(dynamics.move_to(unknowns));
+  const TurnRows rows(*at.model, *dynamics.node(0).chart, guess.x[0], 1.0);
+  ASSERT_EQ(rows.n_rows(), 1);
+  const double angle = turn.tail<3>().norm();
+  EXPECT_NEAR(rows.value(0, 0, dynamics), 1.0 + 2.0 * std::cos(angle), 1e-14);
+  EXPECT_NEAR(rows.lower(0), 1.0 + 2.0 * std::cos(1.0), 1e-15);
+}
+
 TEST(Nlp, PatternsHoldEveryEntry) {
   // Differences by every unknown touch no entry outside the patterns.
   ControlCase at = test::trunk_case(2, 25.0);
