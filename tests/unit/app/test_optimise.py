@@ -83,7 +83,8 @@ class Optimise(ProgramTest):
     def test_is_not_resumed_but_told_how_to_go_on(self):
         message = self.message("optimise", JOINT, "--resume", "a.h5", code=2)
         self.assertEqual(message, "error: 'a.h5' cannot be resumed: the solver of an optimisation keeps no state from which it could go on as if "
-                                  "unbroken; start from the last iterate instead, into another file: --set 'optimal_control.guess={from: a.h5}'")
+                                  "unbroken; start from the last iterate instead, into another file: "
+                                  f"--set 'optimal_control.guess={{from: {self.folder.resolve() / 'a.h5'}}}'")
 
     def test_says_where_an_infeasible_problem_fails(self):
         done = self.program("optimise", SLIDER, "-o", "a.h5", "--set", "optimal_control.controls.push.max=0.01", code=3)
