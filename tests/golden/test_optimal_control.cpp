@@ -135,7 +135,7 @@ TEST_P(Replay, AtTheSameStepIsTheOptimum) {
   const OptimalRun run(GetParam(), {"optimal_control.replay={}"});
   ASSERT_TRUE(run.completed()) << run.found().outcome.sentence;
   for (const pipeline::Deviation& one : run.found().replay->all) {
-    EXPECT_LT(one.largest, one.is_angle ? 1e-9 : 1e-6) << one.name;
+    EXPECT_LT(one.largest, one.is_angle ? 1e-9 : 1e-7) << one.name;  // mm, in scenes of 100 mm and more
   }
 }
 
