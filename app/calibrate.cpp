@@ -69,7 +69,7 @@ void write_scene(const std::string& path, const std::string& text) {
 
 int calibrate(const StudyArguments& arguments) {
   const scene::CalibrateStudy study = scene::read_calibrate_study(arguments.study);
-  const scene::SceneText scene(scene::path_of_file(study.origin, study.scene), arguments.overrides);
+  const scene::SceneText scene = scene::scene_of_study(study.origin, study.scene, study.set, arguments.overrides);
   const std::string output =
       arguments.output.empty() ? fs::path(study.scene).stem().string() + "_calibrated.yaml" : arguments.output;
   const std::string record =

@@ -108,7 +108,7 @@ int sweep(const StudyArguments& arguments) {
   setup.merge_only = arguments.merge;
   if (!arguments.shard.empty()) read_shard(arguments.shard, setup);
   const scene::SweepStudy study = scene::read_sweep_study(arguments.study);
-  const scene::SceneText scene(scene::path_of_file(study.origin, study.scene), arguments.overrides);
+  const scene::SceneText scene = scene::scene_of_study(study.origin, study.scene, study.set, arguments.overrides);
   if (!arguments.slurm.empty()) return write_script(arguments, setup.table);
   watch_interrupts();
   ProgressBar bar(arguments.progress && base::verbosity() != base::Verbosity::quiet, "points");

@@ -51,7 +51,9 @@ LeastSquaresResult minimise(const LeastSquaresProblem& problem, const Eigen::Vec
     return best;
   }
   best.cost = 0.5 * best.r.squaredNorm();
+  constexpr int most_stalls = 3;
   double damping = 0.0;
+  int stalls = 0;
   for (best.iterations = 0; best.iterations < options.max_iterations; ++best.iterations) {
     if (watch && !watch(best.iterations, best.cost)) {
       best.end = LeastSquaresEnd::interrupted;
@@ -84,6 +86,7 @@ LeastSquaresResult minimise(const LeastSquaresProblem& problem, const Eigen::Vec
       accepted = next.cost <= best.cost;
       const double gain = expected > 0.0 ? (best.cost - next.cost) / expected : 0.0;
       if (accepted) {
+        stalls = best.cost - next.cost < options.stall_decrease * best.cost ? stalls + 1 : 0;
         next.iterations = best.iterations;
         best = std::move(next);
         z = trial;
@@ -93,7 +96,7 @@ LeastSquaresResult minimise(const LeastSquaresProblem& problem, const Eigen::Vec
       } else {
         damping = std::max(10.0 * damping, 1e-6);
       }
-      if (moved <= options.step_tolerance || damping > 1e12) {
+      if (moved <= options.step_tolerance || damping > 1e12 || stalls == most_stalls) {
         ++best.iterations;
         best.end = LeastSquaresEnd::converged;
         return best;

@@ -21,7 +21,8 @@ struct LeastSquaresOptions {
   int max_iterations = 60;
   double step_tolerance = 1e-11;      ///< of x over upper - lower
   double gradient_tolerance = 1e-13;  ///< of the projected gradient over |J| |r|, in scaled variables
-  double rank_tolerance = 1e-9;       ///< singular values below it, over the largest, count as 0
+  double stall_decrease = 1e-6;  ///< of the cost, relative: less three times in a row is a flat valley, and the end
+  double rank_tolerance = 1e-9;  ///< singular values below it, over the largest, count as 0
 };
 
 enum class LeastSquaresEnd { converged, iteration_limit, cannot_evaluate, interrupted };

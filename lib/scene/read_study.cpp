@@ -122,6 +122,13 @@ bool read_value(ReadContext& context, const Node& node, const base::Field& field
   });
 }
 
+bool read_value(ReadContext& context, const Node& node, const base::Field&, SetEntries& entries) {
+  return read_keys(context, node, "entries of the scene", [&](const MapEntry& entry, Origin origin) {
+    entries.items.push_back({.path = entry.key, .origin = std::move(origin), .text = flow_text(entry.value)});
+    return true;
+  });
+}
+
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, SweepOutputs& outputs) {
   return read_keys(context, node, "outputs", [&](const MapEntry& entry, Origin origin) {
     SweepOutput& output = outputs.items.emplace_back();

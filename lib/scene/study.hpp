@@ -53,11 +53,22 @@ struct SweepOutputs {
   std::vector<SweepOutput> items = {};
 };
 
+/// Entries of the scene that hold for the whole study, as --set.
+struct SetEntry {
+  std::string path = {};
+  Origin origin = {};
+  std::string text = {};  ///< YAML
+};
+struct SetEntries {
+  std::vector<SetEntry> items = {};
+};
+
 struct SweepStudy {
   std::string file = {};
   Origin origin = {};
   int version = study_version;
   std::string scene = {};
+  SetEntries set = {};
   StudyVerb verb = StudyVerb::run;
   Design design = Design::grid;
   std::optional<int> samples = {};
@@ -72,6 +83,9 @@ struct SweepStudy {
     visit(Field{.key = "sweep", .doc = "format version", .range = {.min = study_version, .max = study_version}},
           self.version);
     visit(Field{.key = "scene", .doc = "scene file, from the folder of this file"}, self.scene);
+    visit(
+        Field{.key = "set", .doc = "entries of the scene for the whole study, as --set", .need = base::Need::optional},
+        self.set);
     visit(Field{.key = "verb", .doc = "what is done with every point", .need = optional}, self.verb);
     visit(Field{.key = "design", .doc = "how the values make points", .need = optional}, self.design);
     visit(Field{.key = "samples", .doc = "points of a latin hypercube", .range = {.min = 1}, .need = optional},
@@ -150,6 +164,7 @@ struct CalibrateStudy {
   Origin origin = {};
   int version = study_version;
   std::string scene = {};
+  SetEntries set = {};
   std::string reference = {};
   std::optional<std::string> time_unit = {};
   FittedKeys fit = {};
@@ -161,6 +176,9 @@ struct CalibrateStudy {
     visit(Field{.key = "calibrate", .doc = "format version", .range = {.min = study_version, .max = study_version}},
           self.version);
     visit(Field{.key = "scene", .doc = "scene file, from the folder of this file"}, self.scene);
+    visit(
+        Field{.key = "set", .doc = "entries of the scene for the whole study, as --set", .need = base::Need::optional},
+        self.set);
     visit(Field{.key = "reference", .doc = "what is fitted to: a result (.h5) or a table (.csv)"}, self.reference);
     visit(Field{.key = "time_unit",
                 .doc = "of the first column of a CSV reference; default: that of the scene",
@@ -205,6 +223,11 @@ class SceneText {
   std::vector<std::string> overrides_;
   Node root_;
 };
+
+/// The scene that a study names, with its `set:` and then the overrides of the command line. InputError, located in the
+/// study where `set:` is to blame.
+SceneText scene_of_study(const Origin& study, const std::string& scene, const SetEntries& set,
+                         const std::vector<std::string>& overrides);
 
 /// The number at `path` of the scene in its own units; nothing if there is none.
 std::optional<double> number_at(const Scene& scene, const std::string& path);

@@ -130,7 +130,9 @@ std::string SceneText::replaced(const std::vector<std::string>& overrides, const
   std::vector<base::Diagnostic> none;
   Node root = *parse_yaml(text_, path_, 0, none);
   std::vector<std::pair<Written, std::string>> edits;
-  for (const std::string& override : overrides) {
+  std::vector<std::string> all = overrides_;
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  for (const std::string& override : all) {
     const std::size_t equals = override.find('=');
     const std::optional<Written> place = written(text_, node_at(root, std::string_view(override).substr(0, equals)));
     if (place) edits.emplace_back(*place, override.substr(equals + 1));
@@ -152,6 +154,36 @@ std::string SceneText::replaced(const std::vector<std::string>& overrides, const
   for (const std::string& override : overrides) apply_override(tree, override, 1, none);
   return heading + "# Keys that stand in no line of their own were set: comments and anchors are gone.\n" +
          to_yaml(tree);
+}
+
+SceneText scene_of_study(const Origin& study, const std::string& scene, const SetEntries& set,
+                         const std::vector<std::string>& overrides) {
+  const std::string path = path_of_file(study, scene);
+  const SceneText plain(path, {});
+  std::vector<base::Diagnostic> errors;
+  std::vector<std::string> all;
+  std::vector<const SetEntry*> sources;
+  for (const SetEntry& entry : set.items) {
+    for (const std::string& key : plain.keys(entry.path, entry.origin, errors)) {
+      all.push_back(base::format("{}={}", key, entry.text));
+      sources.push_back(&entry);
+    }
+  }
+  if (!errors.empty()) throw base::InputError(std::move(errors));
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  try {
+    return SceneText(path, all);
+  } catch (const base::InputError& error) {
+    errors = error.diagnostics();
+  }
+  for (base::Diagnostic& found : errors) {
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+      if (found.place.file != override_name(all[i])) continue;
+      found = error_at(sources[i]->origin, (found.path.empty() ? "" : found.path + ": ") + found.message);
+      break;
+    }
+  }
+  throw base::InputError(std::move(errors));
 }
 
 std::optional<double> number_at(const Node& resolved, const std::string& path) {

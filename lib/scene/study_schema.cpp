@@ -53,6 +53,7 @@ Node values_node() {
                  form("linspace", spaced, "[first, last, number], evenly spaced"),
                  form("logspace", spaced, "[first, last, number], evenly spaced logarithms"), std::move(range)});
 }
+Node node_of(const base::Field&, const SetEntries&) { return map_of(Node::map()); }
 Node node_of(const base::Field&, const VariedKeys&) { return map_of(values_node()); }
 Node node_of(const base::Field&, const SweepOutputs&) {
   return map_of(typed("string")).with("propertyNames", Node::map().with("pattern", text(name_pattern)));

@@ -8,8 +8,7 @@
 namespace muldi::pipeline {
 namespace {
 
-constexpr double at_bound = 1e-9;      // of the distance of the bounds
-constexpr double wide_interval = 0.5;  // of the value: worth a warning
+constexpr double at_bound = 1e-9;  // of the distance of the bounds
 
 /// All curves as residuals and their Jacobian.
 class Residuals {
@@ -65,10 +64,6 @@ void warn(Calibration& result) {
     if (low || result.upper[k] - result.value[k] <= at_bound * width) {
       result.warnings.push_back(
           base::format("{} is at its {} bound: widen it if the physics allow", name, low ? "lower" : "upper"));
-    }
-    const double half = result.quality.half_width[k];
-    if (std::isfinite(half) && half > wide_interval * std::abs(result.value[k])) {
-      result.warnings.push_back(base::format("{} is poorly determined: {:.4g} +- {:.2g}", name, result.value[k], half));
     }
   }
 }

@@ -10,7 +10,9 @@
 namespace muldi::pipeline {
 namespace {
 
-constexpr double no_share = 1e-4;  // of a combination, below which a parameter is no part of it
+constexpr double no_share = 1e-4;    // of a combination, below which a parameter is no part of it
+constexpr double weak_share = 0.02;  // the same of a weak one, which is no sharp direction
+constexpr double weak_limit = 0.5;   // relative half-width from which a combination is hardly determined
 
 /// The basis of a null space (n, k) with as few parameters in each direction as elimination finds.
 void simplify(Eigen::MatrixXd& N) {
@@ -69,20 +71,27 @@ FitQuality fit_quality(const Eigen::MatrixXd& J, const Eigen::VectorXd& r, const
   Eigen::VectorXd variance = Eigen::VectorXd::Zero(n);
   for (Eigen::Index i = 0; i < rank; ++i) variance += (V.col(i) / s[i]).cwiseAbs2();
   quality.deviation = quality.residual_deviation * unit.cwiseProduct(variance.cwiseSqrt());
-  Eigen::MatrixXd N = V.rightCols(n - rank);
-  if (N.cols() > 0) simplify(N);
-  for (Eigen::Index c = 0; c < N.cols(); ++c) {
-    N.col(c) /= N.col(c).cwiseAbs().maxCoeff();
-    FreeCombination combination;
-    for (Eigen::Index k = 0; k < n; ++k) {
-      if (std::abs(N(k, c)) < no_share) continue;
-      combination.parameters.push_back(static_cast<std::size_t>(k));
-      combination.shares.push_back(N(k, c));
-      quality.deviation[k] = std::numeric_limits<double>::infinity();
+  const double t = student_quantile(quality.freedom);
+  Eigen::Index strong = rank;
+  while (strong > 0 && t * quality.residual_deviation / s[strong - 1] > weak_limit) --strong;
+  const auto add = [&](Eigen::Index first, Eigen::Index count, bool weak) {
+    Eigen::MatrixXd N = V.middleCols(first, count);
+    if (count > 0) simplify(N);
+    for (Eigen::Index c = 0; c < count; ++c) {
+      N.col(c) /= N.col(c).cwiseAbs().maxCoeff();
+      FreeCombination combination{.weak = weak};
+      for (Eigen::Index k = 0; k < n; ++k) {
+        if (std::abs(N(k, c)) < (weak ? weak_share : no_share)) continue;
+        combination.parameters.push_back(static_cast<std::size_t>(k));
+        combination.shares.push_back(N(k, c));
+        if (!weak) quality.deviation[k] = std::numeric_limits<double>::infinity();
+      }
+      quality.combinations.push_back(std::move(combination));
     }
-    quality.combinations.push_back(std::move(combination));
-  }
-  quality.half_width = student_quantile(quality.freedom) * quality.deviation;
+  };
+  add(rank, n - rank, false);
+  add(strong, rank - strong, true);
+  quality.half_width = t * quality.deviation;
   return quality;
 }
 
@@ -93,11 +102,15 @@ std::string describe(const FreeCombination& combination, const std::vector<std::
     own.push_back(names[combination.parameters[i]]);
     changes.push_back(base::format("{:+.3g} %", combination.shares[i]));
   }
-  if (own.size() == 1) return base::format("the data say nothing about {}: take it out of `fit`", own.front());
+  const std::string what =
+      combination.weak ? "hardly changes what is compared, within its errors" : "changes nothing that is compared";
+  if (own.size() == 1) {
+    return combination.weak ? base::format("the data hardly determine {}", own.front())
+                            : base::format("the data say nothing about {}: take it out of `fit`", own.front());
+  }
   return base::format(
-      "the data cannot tell {} apart: changing them together by {} changes nothing that is compared; hold one of them "
-      "fixed, or compare more",
-      base::joined(own, " and "), base::joined(changes, ", "));
+      "the data {} tell {} apart: changing them together by {} {}; hold one of them fixed, or compare more",
+      combination.weak ? "can hardly" : "cannot", base::joined(own, " and "), base::joined(changes, ", "), what);
 }
 
 }  // namespace muldi::pipeline

@@ -6,8 +6,10 @@
 
 namespace muldi::pipeline {
 
-/// Parameters that can move together without any effect on what is compared: d log p_k = share_k.
+/// Parameters that can move together without effect on what is compared, or with one that is lost in the residuals:
+/// d log p_k = share_k.
 struct FreeCombination {
+  bool weak = false;  ///< has an effect, but the confidence interval along it is wider than half the values
   std::vector<std::size_t> parameters = {};
   std::vector<double> shares = {};  ///< relative changes, the largest 1
 };
