@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace muldi::math {
@@ -30,80 +31,118 @@ Eigen::VectorXd step_of(const Eigen::MatrixXd& J, const Eigen::VectorXd& r, doub
   return svd.matrixV() * c;
 }
 
+/// The search in z = (x - lower)/(upper - lower), where all bounds are equally far.
+class Search {
+ public:
+  Search(const LeastSquaresProblem& problem, const Eigen::VectorXd& x0, const LeastSquaresOptions& options)
+      : problem_(problem),
+        options_(options),
+        width_(problem.upper - problem.lower),
+        z_((x0 - problem.lower).cwiseQuotient(width_).cwiseMax(0.0).cwiseMin(1.0)) {
+    best_.x = x_of(z_);
+  }
+
+  LeastSquaresResult& best() { return best_; }
+
+  bool begin() {
+    const bool valid = problem_.evaluate(best_.x, best_.r, &best_.J);
+    best_.cost = valid ? 0.5 * best_.r.squaredNorm() : 0.0;
+    return valid;
+  }
+
+  /// Linearises at the best point; true if its projected gradient vanishes.
+  bool is_stationary() {
+    J_ = best_.J * width_.asDiagonal();
+    const Eigen::VectorXd gradient = J_.transpose() * best_.r;
+    free_ = free_variables(z_, gradient);
+    double projected = 0.0;
+    for (const Eigen::Index i : free_) projected = std::max(projected, std::abs(gradient[i]));
+    return free_.empty() || projected <= options_.gradient_tolerance * J_.norm() * best_.r.norm();
+  }
+
+  /// Tries steps until one is accepted; true if there is no more to gain.
+  bool improve() {
+    Eigen::MatrixXd on_free(J_.rows(), static_cast<Eigen::Index>(free_.size()));
+    for (std::size_t k = 0; k < free_.size(); ++k) on_free.col(static_cast<Eigen::Index>(k)) = J_.col(free_[k]);
+    for (;;) {
+      const Eigen::VectorXd step = step_of(on_free, best_.r, damping_, options_.rank_tolerance);
+      Eigen::VectorXd trial = z_;
+      for (std::size_t k = 0; k < free_.size(); ++k) trial[free_[k]] += step[static_cast<Eigen::Index>(k)];
+      trial = trial.cwiseMax(0.0).cwiseMin(1.0);
+      const double moved = (trial - z_).lpNorm<Eigen::Infinity>();
+      const bool accepted = try_point(trial);
+      if (moved <= options_.step_tolerance || damping_ > 1e12 || stalls_ == most_stalls) return true;
+      if (accepted) return false;
+    }
+  }
+
+ private:
+  static constexpr int most_stalls = 3;
+
+  Eigen::VectorXd x_of(const Eigen::VectorXd& z) const {
+    return (problem_.lower + width_.cwiseProduct(z)).cwiseMax(problem_.lower).cwiseMin(problem_.upper);
+  }
+
+  /// Moves there if it is no worse, and adapts the damping.
+  bool try_point(const Eigen::VectorXd& trial) {
+    const double expected = best_.cost - 0.5 * (best_.r + J_ * (trial - z_)).squaredNorm();
+    LeastSquaresResult next{.x = x_of(trial)};
+    const bool valid = problem_.evaluate(next.x, next.r, &next.J);
+    next.cost = valid ? 0.5 * next.r.squaredNorm() : std::numeric_limits<double>::infinity();
+    if (!(next.cost <= best_.cost)) {
+      damping_ = std::max(10.0 * damping_, least_damping);
+      return false;
+    }
+    const double gain = expected > 0.0 ? (best_.cost - next.cost) / expected : 0.0;
+    stalls_ = best_.cost - next.cost < options_.stall_decrease * best_.cost ? stalls_ + 1 : 0;
+    next.iterations = best_.iterations;
+    best_ = std::move(next);
+    z_ = trial;
+    if (gain > 0.75) {
+      damping_ = damping_ < 0.01 * least_damping ? 0.0 : 0.1 * damping_;
+    } else if (gain <= 0.25) {
+      damping_ = std::max(4.0 * damping_, least_damping);
+    }
+    return true;
+  }
+
+  static constexpr double least_damping = 1e-6;
+
+  const LeastSquaresProblem& problem_;
+  const LeastSquaresOptions& options_;
+  Eigen::VectorXd width_;
+  Eigen::VectorXd z_;
+  LeastSquaresResult best_;
+  Eigen::MatrixXd J_;  // by z
+  std::vector<Eigen::Index> free_;
+  double damping_ = 0.0;
+  int stalls_ = 0;
+};
+
 }  // namespace
 
 LeastSquaresResult minimise(const LeastSquaresProblem& problem, const Eigen::VectorXd& x0,
                             const LeastSquaresOptions& options,
                             const std::function<bool(int iteration, double cost)>& watch) {
-  const Eigen::VectorXd width = problem.upper - problem.lower;
-  const auto x_of = [&](const Eigen::VectorXd& z) {
-    return Eigen::VectorXd(problem.lower + width.cwiseProduct(z))
-        .cwiseMax(problem.lower)
-        .cwiseMin(problem.upper)
-        .eval();
-  };
-  // z in [0, 1]: where all bounds are equally far.
-  Eigen::VectorXd z = (x0 - problem.lower).cwiseQuotient(width).cwiseMax(0.0).cwiseMin(1.0);
-  LeastSquaresResult best;
-  best.x = x_of(z);
-  if (!problem.evaluate(best.x, best.r, &best.J)) {
+  Search search(problem, x0, options);
+  LeastSquaresResult& best = search.best();
+  if (!search.begin()) {
     best.end = LeastSquaresEnd::cannot_evaluate;
-    return best;
+    return std::move(best);
   }
-  best.cost = 0.5 * best.r.squaredNorm();
-  constexpr int most_stalls = 3;
-  double damping = 0.0;
-  int stalls = 0;
-  for (best.iterations = 0; best.iterations < options.max_iterations; ++best.iterations) {
+  for (bool done = false; !done && best.iterations < options.max_iterations;) {
     if (watch && !watch(best.iterations, best.cost)) {
       best.end = LeastSquaresEnd::interrupted;
-      return best;
+      break;
     }
-    const Eigen::MatrixXd J = best.J * width.asDiagonal();
-    const Eigen::VectorXd gradient = J.transpose() * best.r;
-    const std::vector<Eigen::Index> free = free_variables(z, gradient);
-    const double size = J.norm() * best.r.norm();
-    double projected = 0.0;
-    for (const Eigen::Index i : free) projected = std::max(projected, std::abs(gradient[i]));
-    if (free.empty() || projected <= options.gradient_tolerance * size) {
-      best.end = LeastSquaresEnd::converged;
-      return best;
+    done = search.is_stationary();
+    if (!done) {
+      done = search.improve();
+      ++best.iterations;
     }
-    Eigen::MatrixXd on_free(J.rows(), static_cast<Eigen::Index>(free.size()));
-    for (std::size_t k = 0; k < free.size(); ++k) on_free.col(static_cast<Eigen::Index>(k)) = J.col(free[k]);
-    bool accepted = false;
-    while (!accepted) {
-      const Eigen::VectorXd step = step_of(on_free, best.r, damping, options.rank_tolerance);
-      Eigen::VectorXd trial = z;
-      for (std::size_t k = 0; k < free.size(); ++k) trial[free[k]] += step[static_cast<Eigen::Index>(k)];
-      trial = trial.cwiseMax(0.0).cwiseMin(1.0);
-      const double moved = (trial - z).lpNorm<Eigen::Infinity>();
-      const double expected = best.cost - 0.5 * (best.r + J * (trial - z)).squaredNorm();
-      LeastSquaresResult next;
-      next.x = x_of(trial);
-      const bool valid = problem.evaluate(next.x, next.r, &next.J);
-      next.cost = valid ? 0.5 * next.r.squaredNorm() : std::numeric_limits<double>::infinity();
-      accepted = next.cost <= best.cost;
-      const double gain = expected > 0.0 ? (best.cost - next.cost) / expected : 0.0;
-      if (accepted) {
-        stalls = best.cost - next.cost < options.stall_decrease * best.cost ? stalls + 1 : 0;
-        next.iterations = best.iterations;
-        best = std::move(next);
-        z = trial;
-        damping = gain > 0.75   ? (damping < 1e-8 ? 0.0 : 0.1 * damping)
-                  : gain > 0.25 ? damping
-                                : std::max(4.0 * damping, 1e-6);
-      } else {
-        damping = std::max(10.0 * damping, 1e-6);
-      }
-      if (moved <= options.step_tolerance || damping > 1e12 || stalls == most_stalls) {
-        ++best.iterations;
-        best.end = LeastSquaresEnd::converged;
-        return best;
-      }
-    }
+    if (done) best.end = LeastSquaresEnd::converged;
   }
-  return best;
+  return std::move(best);
 }
 
 }  // namespace muldi::math

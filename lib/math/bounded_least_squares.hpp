@@ -29,9 +29,9 @@ enum class LeastSquaresEnd { converged, iteration_limit, cannot_evaluate, interr
 
 struct LeastSquaresResult {
   LeastSquaresEnd end = LeastSquaresEnd::iteration_limit;
-  Eigen::VectorXd x;  ///< best (n)
-  Eigen::VectorXd r;  ///< there
-  Eigen::MatrixXd J;
+  Eigen::VectorXd x = {};  ///< best (n)
+  Eigen::VectorXd r = {};  ///< there
+  Eigen::MatrixXd J = {};
   int iterations = 0;
   double cost = 0.0;  ///< 1/2 |r|^2
 };

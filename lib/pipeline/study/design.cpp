@@ -30,10 +30,11 @@ class Planner {
   Planner(const scene::SweepStudy& study, const scene::SceneText& text) : study_(study), text_(text) {}
 
   SweepPlan plan() {
+    const bool usual_units = text_.read({}).units == base::UnitSystem();
     for (const VariedKey& key : study_.vary.items) {
       plan_.keys.push_back(key.path);
       const auto help = scene::find_key(key.path);
-      plan_.units.push_back(help ? help->unit : "");
+      plan_.units.push_back(help && usual_units ? help->unit : "");
       targets_.push_back(text_.keys(key.path, key.origin, errors_));
     }
     stop();

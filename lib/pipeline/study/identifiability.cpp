@@ -60,7 +60,7 @@ FitQuality fit_quality(const Eigen::MatrixXd& J, const Eigen::VectorXd& r, const
   }
   const Eigen::MatrixXd relative = J * unit.asDiagonal();
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(relative, Eigen::ComputeThinU | Eigen::ComputeFullV);
-  const Eigen::VectorXd s = svd.singularValues();
+  const Eigen::VectorXd& s = svd.singularValues();
   const double largest = s.size() > 0 ? s[0] : 0.0;
   quality.singular_values = Eigen::VectorXd::Zero(n);
   if (largest > 0.0) quality.singular_values.head(s.size()) = s / largest;
