@@ -88,10 +88,10 @@ int report(const pipeline::SweepEnd& end, const std::string& table) {
     base::log_info(
         base::format("{} of {} points{}: {}, {}", end.n_points - end.n_missing, end.n_points, failed, table, csv));
   } else {
-    base::log_info(base::format("{} of {} points{}; other shards have {} to do", end.n_points - end.n_missing,
-                                end.n_points, failed, end.n_missing));
+    base::log_info(base::format("{} of {} points{}; {} to do{}", end.n_points - end.n_missing, end.n_points, failed,
+                                end.n_missing, end.n_killed > 0 ? "" : " in other shards"));
   }
-  const bool incomplete = end.written && end.n_missing > 0;
+  const bool incomplete = (end.written && end.n_missing > 0) || end.n_killed > 0;
   return end.n_failed > 0 || incomplete ? ExitCode::numerics_failed : ExitCode::success;
 }
 

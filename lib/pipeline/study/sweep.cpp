@@ -1,5 +1,7 @@
 #include "pipeline/study/sweep.hpp"
 
+#include <signal.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <limits>
@@ -134,6 +136,14 @@ class SweepRun {
     calls.work = [this](std::size_t task) { return to_line(run_point(task)); };
     calls.interrupted = setup_.interrupted;
     calls.done = [&](std::size_t task, const std::string& answer, int signal) {
+      if (signal == SIGKILL) {
+        ++end.n_killed;
+        if (setup_.failed) {
+          setup_.failed(task, base::joined(plan_.points[task].overrides),
+                        "killed from outside, for want of memory perhaps: it is tried again the next time");
+        }
+        return;
+      }
       FinishedPoint point;
       if (!from_line(answer, outputs_.size(), point)) {
         point = failed(task, "crashed", signal > 0 ? base::format("ended by signal {}", signal) : "ended early");

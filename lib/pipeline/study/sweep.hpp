@@ -30,14 +30,15 @@ struct SweepEnd {
   std::size_t n_run = 0;      ///< now
   std::size_t n_failed = 0;   ///< of all that are finished
   std::size_t n_missing = 0;  ///< of other shards, or not run yet
+  std::size_t n_killed = 0;   ///< now, from outside: not finished
   bool interrupted = false;
   bool written = false;  ///< the table: once every point is finished, or on `merge_only`
 };
 
-/// Runs the points of the shard that no journal has. The table has the same bytes however often the sweep was broken
-/// off, whatever the number of jobs and shards.
-/// InputError with all that is wrong with the study before anything runs; EnvironmentError if the results cannot be
-/// written.
+/// Runs the points of the shard that no journal has. A point that crashes has the status `crashed`; one that is killed
+/// from outside (memory, the end of a cluster's job) is not finished and is tried again the next time. The table has
+/// the same bytes however often the sweep was broken off, whatever the number of jobs and shards. InputError with all
+/// that is wrong with the study before anything runs; EnvironmentError if the results cannot be written.
 SweepEnd sweep(const scene::SweepStudy& study, const scene::SceneText& scene, const SweepSetup& setup);
 
 }  // namespace muldi::pipeline

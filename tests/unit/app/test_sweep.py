@@ -3,6 +3,7 @@
 
 import csv
 import os
+import pathlib
 import random
 import re
 import signal
@@ -83,6 +84,28 @@ class Sweep(ProgramTest):
         self.assertEqual(self.both("whole"), self.both("broken"))
         self.assertEqual(self.program("sweep", study, "-o", "broken.h5").returncode, 0)  # nothing to do
 
+    def kill_a_child(self, process, number):
+        """Ends one of the processes in which points run."""
+        children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children")
+        self.wait_for(lambda: children.read_text().split(), process, "a point runs")
+        os.kill(int(children.read_text().split()[0]), number)
+        return process.wait()
+
+    def test_a_crash_is_the_status_of_its_point(self):
+        code = self.kill_a_child(self.start("sweep", self.study(n=2, duration="3 s")), signal.SIGSEGV)
+        self.assertEqual(code, 3)
+        self.assertRegex(self.said(), r"warning: point 0 \(.*\): crashed: ended by signal 11")
+        self.assertEqual([row["status"] for row in self.table()], ["crashed", "completed", "completed", "completed"])
+
+    def test_a_point_killed_from_outside_is_tried_again(self):
+        study = self.study(n=2, duration="3 s")
+        code = self.kill_a_child(self.start("sweep", study), signal.SIGKILL)
+        self.assertEqual(code, 3)
+        self.assertIn("killed from outside, for want of memory perhaps: it is tried again the next time", self.said())
+        self.assertIn("3 of 4 points; 1 to do", self.said())
+        self.program("sweep", study)
+        self.assertEqual([row["status"] for row in self.table()], ["completed"] * 4)
+
     def test_an_interrupt_says_how_to_go_on(self):
         study = self.study(n=40, duration="2 s")
         process = self.start("sweep", study)
@@ -97,7 +120,7 @@ class Sweep(ProgramTest):
         study = self.study()
         self.program("sweep", study, "-o", "whole.h5")
         for k in (2, 1):
-            self.assertIn("other shards have", self.program("sweep", study, "-o", "s.h5", "--shard", f"{k}/3").stderr)
+            self.assertIn(" in other shards", self.program("sweep", study, "-o", "s.h5", "--shard", f"{k}/3").stderr)
         self.assertFalse((self.folder / "s.h5").exists())
         self.program("sweep", study, "-o", "s.h5", "--merge", code=3)  # what there is
         self.assertEqual([row["status"] for row in self.table()].count("missing"), 2)
