@@ -57,6 +57,22 @@ TEST(FieldContrast, TheEnergyFallsMonotonicallyUnderRefinement) {
   test::record_figure("31", "fall of the energy over the one before", second / first, 1.0);
 }
 
+TEST(FieldContrast, TheEnergyIsHalfOfChargeTimesVoltage) {
+  const double voltage = 1e3;
+  const test::SolidSystem system = layered(8, voltage);
+  const auto model = test::make_model(system);
+  const Solid& solid = test::solid_in(*model);
+  const Eigen::VectorXd phi = solid.potentials_at(system.solid.X, {});
+  const Eigen::VectorXd charge = -solid.charge_rows(system.solid.X, phi);
+  double sum = 0.0;
+  for (const PrescribedPotential& at : system.solid.potentials) {
+    if (at.value.constant != 0.0) sum += charge[at.node];
+  }
+  const double energy = -solid.elements().energies({.x = system.solid.X.data(), .phi = phi.data()}).electric;
+  test::record_near("31", "charge of the electrode times voltage over twice the energy", sum * voltage / (2.0 * energy),
+                    1.0, 1e-10);
+}
+
 TEST(FieldContrast, TheCoupledMotionStaysFinite) {
   const test::SolidSystem system = layered(4, 1.2e4);
   const auto model = test::make_model(system);
