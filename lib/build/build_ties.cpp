@@ -84,11 +84,11 @@ TieWrench wrench_on(const fem::Solid& solid, const TiedNodes& group, const model
 void add_tie_observables(const std::string& owner, const fem::Solid& solid, const TiedNodes& group,
                          model::Model& model) {
   const std::string folder = "ties/" + owner + "." + group.name + "/";
-  const auto add = [&](const char* what, base::Dimension unit, std::string doc, auto part) {
+  const auto add = [&](const char* what, base::Dimension unit, const std::string& doc, auto part) {
     model.observables.push_back({.path = folder + what,
                                  .shape = {3},
                                  .unit = unit,
-                                 .doc = std::move(doc),
+                                 .doc = doc,
                                  .evaluate = [&solid, &group, part](const model::NodeView& at, std::span<double> out) {
                                    const Eigen::Vector3d value = wrench_on(solid, group, at).*part;
                                    std::copy(value.data(), value.data() + 3, out.begin());

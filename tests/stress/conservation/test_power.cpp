@@ -31,7 +31,7 @@ TEST(Power, OfADrivenAndDampedPendulumBalances) {
   const double fine = left_over(*model, 4.0, 120);
   test::record_figure("24", "driven and damped pendulum, rest of the balance over the turnover", std::abs(coarse),
                       1e-2);
-  test::record_near("24", "the same over that of half the step", coarse / fine, 4.0, 0.2);
+  test::record_near("24", "driven and damped pendulum, ratio of the rest on halving", coarse / fine, 4.0, 0.2);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ TEST(Degenerate, AGuessWithoutFieldIsBlindForFieldsButNotForTheirSquares) {
   }
   const SolveResult blind = solve(plain.problem, test::effort_of_fields(2), guess, {.max_iterations = 200});
   EXPECT_EQ(blind.status, SolveStatus::infeasible) << "documented: the solver finds no way to go";
-  test::record_at_least("26", "the same by the fields themselves: violation where the solver gives up",
+  test::record_at_least("26", "muscle joint from a guess without field, by the fields themselves: violation left",
                         blind.worst_violation, 1e-3);
 }
 
@@ -66,7 +66,7 @@ TEST(Degenerate, AReplayWithAQuarterOfTheStepDiffersByTheSquareOfTheStep) {
   const double coarse = angles[0] - angles[2];
   const double fine = angles[1] - angles[3];
   test::record_figure("25", "optimum against a replay with dt/4, angle at the end (rad)", std::abs(coarse), 1e-2);
-  test::record_near("25", "the same over that of half the step", coarse / fine, 4.0, 0.4);
+  test::record_near("25", "optimum against a replay with dt/4, ratio on halving", coarse / fine, 4.0, 0.4);
 }
 
 }  // namespace

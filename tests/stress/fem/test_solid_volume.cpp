@@ -246,7 +246,8 @@ TEST(SolidVolume, FilteredPressuresConverge) {
   const double coarse = hydrostatic_error(4);
   const double fine = hydrostatic_error(8);
   test::record_figure("13", "hydrostatic pressure in a clamped box of 8^3 distorted cells, error", fine, 0.2);
-  test::record_at_least("13", "the same, error of 4^3 cells over it", coarse / fine, 1.5);
+  test::record_at_least("13", "hydrostatic pressure in a clamped box, error of 4^3 distorted cells over that of 8^3",
+                        coarse / fine, 1.5);
 }
 
 }  // namespace
