@@ -29,7 +29,7 @@ void run_all(const std::string& input) {
     LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
   };
   run(input);
-  constexpr std::size_t places = 8;
+  constexpr std::size_t places = 4;
   for (std::size_t i = 1; i <= places && input.size() > places; ++i) {
     const std::size_t at = i * (input.size() - 1) / places;
     run(input.substr(0, at));
