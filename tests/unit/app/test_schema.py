@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Scenes as an editor sees them: test_schema.py MULDI_SIM. Every scene and every snippet of the README is valid by the JSON Schema."""
+"""Scenes as an editor sees them: test_schema.py MULDI_SIM. Every scene and every snippet of the pages is valid by the JSON Schema."""
 
 import json
 import re
@@ -15,6 +15,11 @@ MODELINE = re.compile(r"# yaml-language-server: \$schema=(\S+)")
 
 def scene_files():
     return [*sorted(SCENES.glob("*.yaml")), *sorted((ROOT / "tests" / "golden" / "si").glob("*.yaml"))]
+
+
+def pages():
+    """Every page of the repository."""
+    return [path for path in sorted(ROOT.rglob("*.md")) if not path.relative_to(ROOT).parts[0].startswith("build")]
 
 
 class Schema(ProgramTest):
@@ -39,15 +44,23 @@ class Schema(ProgramTest):
             self.assertTrue(named, path.name)
             self.assertEqual((path.parent / named.group(1)).resolve(), ROOT / "schemas" / "scene.schema.json", path.name)
 
-    def test_every_snippet_of_the_readme_is_valid_and_runs_through_the_reader(self):
-        snippets = re.findall(r"```yaml\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
-        self.assertGreaterEqual(len(snippets), 1)
-        for number, text in enumerate(snippets):
-            self.assertEqual(self.problems(text), [], f"snippet {number}")
-            self.program("validate", self.write(f"snippet{number}.yaml", text))
+    def test_every_snippet_of_the_pages_is_valid_and_runs_through_the_reader(self):
+        found = [(page, text) for page in pages() for text in re.findall(r"```yaml\n(.*?)```", page.read_text(), re.DOTALL)]
+        self.assertIn(ROOT / "README.md", [page for page, _ in found])
+        for number, (page, text) in enumerate(found):
+            with self.subTest(page=page.name, number=number):
+                self.assertTrue(text.startswith("muldi: "), "a whole scene (parts of one are ```yml)")
+                self.assertEqual(self.problems(text), [])
+                self.program("validate", self.write(f"snippet{number}.yaml", text))
+
+    def test_every_part_of_a_scene_in_the_pages_is_valid(self):
+        """```yml marks entries of a scene: checked without what a whole one needs beside them."""
+        for page in pages():
+            for text in re.findall(r"```yml\n(.*?)```", page.read_text(), re.DOTALL):
+                self.assertEqual(self.problems("muldi: 1\n" + text), [], page.name)
 
     def test_starter_scenes_are_valid(self):
-        for kind in ("joint", "muscle", "trunk", "solid"):
+        for kind in ("joint", "muscle", "trunk", "solid", "optimal"):
             self.assertEqual(self.problems(self.program("new", kind).stdout), [], kind)
 
     def test_mistakes_are_found(self):

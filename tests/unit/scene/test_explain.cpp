@@ -103,7 +103,7 @@ TEST(Starter, RefusesUnknownKinds) {
     ADD_FAILURE() << "no error";
   } catch (const base::InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "error: no starter scene 'soild' (did you mean 'solid'?); known: joint, muscle, trunk, solid");
+                 "error: no starter scene 'soild' (did you mean 'solid'?); known: joint, muscle, trunk, solid, optimal");
   }
 }
 
