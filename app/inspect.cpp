@@ -7,6 +7,7 @@
 #include "base/text.hpp"
 #include "results/info.hpp"
 #include "scene/read_scene.hpp"
+#include "scene/reference.hpp"
 
 namespace muldi::app {
 
@@ -21,8 +22,8 @@ int info(const std::string& file) {
   return ExitCode::success;
 }
 
-int schema() {
-  std::fputs(scene::schema_text().c_str(), stdout);
+int schema(bool markdown) {
+  std::fputs((markdown ? scene::reference_text() : scene::schema_text()).c_str(), stdout);
   return ExitCode::success;
 }
 

@@ -24,6 +24,7 @@ struct CommandLine {
   bool quiet = false;
   bool no_progress = false;
   bool derivatives = false;
+  bool markdown = false;
   int verbose = 0;
 };
 
@@ -88,7 +89,8 @@ void add_others(CLI::App& program, CommandLine& line) {
   CLI::App* info = program.add_subcommand("info", "status, sizes, final values and statistics of a result file");
   info->add_option("file", line.first, "result file")->required()->type_name("OUT.h5");
 
-  program.add_subcommand("schema", "the JSON Schema of the scene format");
+  CLI::App* schema = program.add_subcommand("schema", "the JSON Schema of the scene format");
+  schema->add_flag("--markdown", line.markdown, "a page of every key instead, schemas/SCENE.md");
 }
 
 /// The verbs for people: pictures, pages, starter scenes, explanations.
@@ -137,7 +139,7 @@ int dispatch(const CLI::App& program, CommandLine& line) {
   if (program.got_subcommand("paraview")) return app::paraview(line.look);
   if (program.got_subcommand("new")) return app::starter(line.look);
   if (program.got_subcommand("explain")) return app::explain(line.look);
-  return app::schema();
+  return app::schema(line.markdown);
 }
 
 std::vector<std::string> names_of(const std::vector<const CLI::App*>& verbs) {

@@ -112,7 +112,7 @@ class View(ProgramTest):
         self.program("plot", "a.h5", "--what", "view", "-o", "a.svg")
         text = (self.folder / "a.svg").read_text()
         # A box of six faces, two tubes of ten sides and two ends; the first state behind the last one.
-        self.assertEqual([group.count("<path") for group in text.split('<g id="PolyCollection')[1:]], [6 + 2 * 12, 6 + 2 * 12])
+        self.assertEqual([group.split("</g>")[0].count("<path") for group in text.split('<g id="PolyCollection')[1:]], [6 + 2 * 12, 6 + 2 * 12])
         self.program("plot", "a.h5", "--what", "view", "-o", "b.svg")
         self.assertEqual(text, (self.folder / "b.svg").read_text())
 
