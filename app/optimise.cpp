@@ -109,14 +109,14 @@ void report(const pipeline::Optimised& result, const scene::Scene& scene, const 
   for (const pipeline::StageEnd& end : result.stages) text += stage_text(end, scene);
   if (result.replay) text += deviations_text(*result.replay, scene);
   std::fputs(text.c_str(), stdout);
-  const std::string status = variational::name_of(result.outcome.status);
   if (result.outcome.completed()) {
     base::log_info(base::format("completed: {}", path));
   } else if (result.outcome.status == variational::Status::interrupted) {
     base::log_warning(
         base::format("interrupted; the best iterate is in {}: go on with `guess: {{from: {}}}`", path, path));
   } else {
-    base::log_error(base::format("{}: {} (the best iterate is in {})", status, result.outcome.sentence, path));
+    report_failure(result.outcome, pipeline::Task::optimal_control, scene,
+                   base::format("the best iterate is in {}", path));
   }
 }
 

@@ -58,7 +58,11 @@ bool is_better(const std::vector<StageEnd>& a, const std::vector<StageEnd>& b) {
 }
 
 Outcome outcome_of(const StageEnd& last) {
-  return {.status = status_of(last.result.status), .sentence = last.result.sentence, .time = last.result.worst_time};
+  std::string sentence = last.result.sentence;
+  if (!is_good(last.result) && !last.result.worst_constraint.empty()) {
+    sentence += base::format("; the largest violation is that of {}", last.result.worst_constraint);
+  }
+  return {.status = status_of(last.result.status), .sentence = sentence, .time = last.result.worst_time};
 }
 
 /// All stages from all guesses.

@@ -60,6 +60,15 @@ void StaticsRun::record(const statics::SweepPoint& point) {
                              .multipliers = point.state.multipliers,
                              .y = point.y,
                              .u = point.u};
+  least_stretched_.clear();
+  for (const model::Observable& observable : built_.model->observables) {
+    if (!observable.path.starts_with("muscles/") || !observable.path.ends_with("/stretch")) continue;
+    double stretch = 0.0;
+    observable.evaluate(view, {&stretch, 1});
+    if (!least_stretched_.empty() && stretch >= least_stretch_) continue;
+    least_stretch_ = stretch;
+    least_stretched_ = observable.path.substr(8, observable.path.size() - 16);
+  }
   rows_.write({.load = point.load,
                .stable = point.report.stability == statics::Stability::stable,
                .iterations = point.report.iterations,
@@ -87,6 +96,20 @@ void StaticsRun::report_critical(const std::vector<statics::CriticalPoint>& poin
   }
 }
 
+std::string StaticsRun::loss_sentence(const statics::SweepResult& result) const {
+  std::string text = result.sentence;
+  if (scene_.statics->control) {
+    const auto index = static_cast<std::size_t>(scene_.controls.index(scene_.statics->control->name));
+    text = base::format("the equilibrium is lost with control '{}' between {:.10g} and {:.10g} {}",
+                        scene_.statics->control->name, result.last_good, result.first_bad,
+                        scene_.units.unit_name(built_.model->controls[index].unit));
+  }
+  if (!least_stretched_.empty()) {
+    text += base::format("; there muscle '{}' is at stretch {:.4g}", least_stretched_, least_stretch_);
+  }
+  return text;
+}
+
 Outcome StaticsRun::run(RunContext& context) {
   const scene::Statics& said = *scene_.statics;
   long row = 0;
@@ -108,7 +131,10 @@ Outcome StaticsRun::run(RunContext& context) {
                       : result.end == End::interrupted         ? variational::Status::interrupted
                       : result.end == End::loss_of_equilibrium ? variational::Status::loss_of_equilibrium
                                                                : variational::Status::no_convergence;
-  return {.status = status, .sentence = result.sentence, .time = std::numeric_limits<double>::quiet_NaN()};
+  const bool lost = result.end == End::loss_of_equilibrium && result.last_good != result.first_bad;
+  return {.status = status,
+          .sentence = lost ? loss_sentence(result) : result.sentence,
+          .time = std::numeric_limits<double>::quiet_NaN()};
 }
 
 }  // namespace muldi::pipeline

@@ -22,6 +22,8 @@ class StaticsRun {
  private:
   void record(const statics::SweepPoint& point);
   void make_sweep();
+  /// Where the equilibrium was lost, as the user speaks of it.
+  std::string loss_sentence(const statics::SweepResult& result) const;
   double last_load() const;
   /// Limit points and branches that the arc length has passed: attributes and messages.
   void report_critical(const std::vector<statics::CriticalPoint>& points, const RunContext& context);
@@ -33,6 +35,8 @@ class StaticsRun {
   std::optional<statics::Sweep> sweep_;
   statics::StaticState state_;
   std::vector<model::Energy> parts_;
+  double least_stretch_ = 0.0;   // of the muscles at the last recorded equilibrium
+  std::string least_stretched_;  // its muscle; empty without muscles
   Eigen::VectorXd zero_q_;
   Eigen::VectorXd zero_v_;
   Eigen::VectorXd constraint_force_;

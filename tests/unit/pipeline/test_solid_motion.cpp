@@ -135,7 +135,7 @@ TEST(SolidMotion, CellsInvertedAtTheEndOfAStepAreReported) {
                           "      - {where: y+, displacement: [0, {table: [[0, 0], [0.1, -2.5]]}, 0]}\n",
                           "dynamics: {duration: 0.1, step: 0.1}\n", "[1, 1, 1]"));
   ASSERT_EQ(run.warnings().size(), 1U);
-  EXPECT_EQ(run.warnings()[0], "at t = 0.1: solid 'cube': cell 0 is inverted (det F -0.25)");
+  EXPECT_EQ(run.warnings()[0], "at t = 0.1 ms: solid 'cube': cell 0 is inverted (det F -0.25)");
 }
 
 TEST(SolidMotion, ASolidThatInvertsSaysSo) {
