@@ -61,10 +61,12 @@ void StaticsRun::record(const statics::SweepPoint& point) {
                              .y = point.y,
                              .u = point.u};
   least_stretched_.clear();
+  model::NodeView look = view;
+  look.serial = looks_--;  // below those of the records
   for (const model::Observable& observable : built_.model->observables) {
     if (!observable.path.starts_with("muscles/") || !observable.path.ends_with("/stretch")) continue;
     double stretch = 0.0;
-    observable.evaluate(view, {&stretch, 1});
+    observable.evaluate(look, {&stretch, 1});
     if (!least_stretched_.empty() && stretch >= least_stretch_) continue;
     least_stretch_ = stretch;
     least_stretched_ = observable.path.substr(8, observable.path.size() - 16);

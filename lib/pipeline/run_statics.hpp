@@ -35,6 +35,7 @@ class StaticsRun {
   std::optional<statics::Sweep> sweep_;
   statics::StaticState state_;
   std::vector<model::Energy> parts_;
+  long looks_ = -2;
   double least_stretch_ = 0.0;   // of the muscles at the last recorded equilibrium
   std::string least_stretched_;  // its muscle; empty without muscles
   Eigen::VectorXd zero_q_;
