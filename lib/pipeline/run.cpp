@@ -32,16 +32,6 @@ variational::LoopOptions loop_options(const scene::Scene& scene, const build::Bu
   return options;
 }
 
-std::string warning_of(const variational::StepReport& report, const variational::StepOptions& options, double t) {
-  if (report.rotation > options.warn_rotation) {
-    return base::format(
-        "at t = {:.6g} a body turns by {:.3g} rad in one step; results lose accuracy, use a smaller step", t,
-        report.rotation);
-  }
-  return base::format("at t = {:.6g} the loops come near a change point (regularity {:.3g} of that at the start)", t,
-                      report.loop_regularity);
-}
-
 /// The dynamics of a run, with what is restored from and put into checkpoints.
 class DynamicsRun {
  public:
@@ -84,7 +74,7 @@ class DynamicsRun {
     };
     callbacks.interrupted = context.interrupted;
     callbacks.warn = [&](const variational::StepReport& report, double t) {
-      if (context.warn) context.warn(warning_of(report, options_.step, t));
+      if (context.warn) context.warn(warning_of(report, t));
     };
     const variational::LoopResult result = loop_->run(state_, ledger_, last_, callbacks);
     if (result.status == variational::Status::no_convergence) return failure(result);
@@ -144,6 +134,19 @@ class DynamicsRun {
       fastest = i;
     }
     return base::format("body '{}'", scene_.bodies[fastest].name) + sentence.substr(any.size());
+  }
+
+  std::string warning_of(const variational::StepReport& report, double t) const {
+    const std::string at = base::format("at t = {:.6g} {}: ", t, scene_.units.time());
+    if (report.rotation > options_.step.warn_rotation) {
+      return at + with_name(base::format(
+                      "a body turns by {:.3g} rad in one step; results lose accuracy: take a smaller dynamics.step",
+                      report.rotation));
+    }
+    return at + base::format(
+                    "the loops come near a change point (regularity {:.3g} of that at the start), where the mechanism "
+                    "may go on in two ways: check the motion with half the dynamics.step",
+                    report.loop_regularity);
   }
 
   /// Says once what the terms find remarkable.

@@ -115,7 +115,7 @@ class TooLargeSteps(ProgramTest):
         done = self.program("run", SCENES / "free_body.yaml", "-o", "a.h5", "--set", "dynamics.step=8")
         self.assertEqual(
             done.stderr,
-            "warning: at t = 8 a body turns by 0.927 rad in one step; results lose accuracy, use a smaller step\ncompleted: a.h5\n",
+            "warning: at t = 8 ms: body 'plate' turns by 0.927 rad in one step; results lose accuracy: take a smaller dynamics.step\ncompleted: a.h5\n",
         )
 
     def test_below_are_not(self):
