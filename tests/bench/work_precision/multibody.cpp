@@ -6,6 +6,7 @@
 #include <span>
 
 #include "bench/work_precision/integrators.hpp"
+#include "bench/work_precision/peer_run.hpp"
 #include "bench/work_precision/published_systems.hpp"
 #include "bench/work_precision/scene_motion.hpp"
 #include "bench/work_precision/work_report.hpp"
@@ -23,6 +24,8 @@ struct Case {
   std::string name;  // of the scene in the report
   std::string file;
   std::unique_ptr<bench::MinimalSystem> system;
+  std::string general_rival = {};  // the system's word for peer_simbody
+  std::vector<std::string> overrides = {};
   double end = 0.0;
   double sample = 0.0;
   std::vector<double> steps = {};
@@ -45,13 +48,17 @@ class Comparison {
       : report_(report),
         case_(one),
         budget_(budget),
-        ready_(scene::read_scene(bench::scene_path(one.file))),
+        ready_(scene::read_scene(bench::scene_path(one.file), one.overrides)),
         chart_(ready_.built.model->manifold->make_chart()) {
     const bench::Coordinates from = one.system->start();
     start_.assign(from.data(), from.data() + from.size());
     chart_->coordinates(ready_.state.x, theta_);
     our_start_ = theta_;
     make_reference();
+  }
+
+  void sweep_ours() {
+    for (const double step : case_.steps) run_ours("step", ours, step_text(step), step, {});
   }
 
   void sweep_steps() {
@@ -79,6 +86,29 @@ class Comparison {
       }
     }
 #endif
+  }
+
+  /// Another general program, with muscles that have no mass: it has no element of theirs.
+  void sweep_simbody() {
+    for (const auto& [word, method] :
+         {std::pair("merson", "Simbody, Runge-Kutta-Merson"), {"cpodes", "Simbody, CPodes BDF"}}) {
+      for (const double accuracy : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
+        const auto n = static_cast<std::size_t>(case_.system->n());
+        const auto n_samples = static_cast<std::size_t>(std::lround(case_.end / case_.sample));
+        const auto numbers =
+            bench::run_peer("peer_simbody",
+                            case_.general_rival + " " + word + " " + bench::short_number(accuracy) + " " +
+                                bench::short_number(case_.end) + " " + bench::short_number(case_.sample),
+                            static_cast<int>(1 + n * n_samples));
+        if (!numbers) return;
+        std::vector<std::vector<double>> rows;
+        for (std::size_t i = 0; i < n_samples; ++i) {
+          const auto from = numbers->begin() + static_cast<std::ptrdiff_t>(1 + i * n);
+          rows.emplace_back(from, from + static_cast<std::ptrdiff_t>(n));
+        }
+        add("step", method, "accuracy " + bench::short_number(accuracy), numbers->front(), rows);
+      }
+    }
   }
 
   void sweep_tolerances(double step) {
@@ -154,7 +184,7 @@ class EnergyComparison {
       : report_(report),
         end_(end),
         budget_(budget),
-        system_(bench::lumped_joint(0.0)),
+        system_(bench::system_of(bench::joint_parts(0.0, bench::muscle_density))),
         ready_(scene::read_scene(
             bench::scene_path("revolute_joint_lumped"),
             std::vector<std::string>{"materials.silicone.viscous.viscosity=0", "muscles.upper.lumped.viscosity=0",
@@ -261,7 +291,9 @@ class EnergyComparison {
   }
 
   void add(const std::string& method, const std::string& setting, double seconds, const EnergyError& error) {
-    for (const auto& [scene, value] : {std::pair(name, error.departure), {drift_name, error.drift}}) {
+    for (const auto& [scene, value] : {std::pair(std::string(name), error.departure), {drift_name, error.drift}}) {
+      // It has lost all that it can lose within the first tenth.
+      if (scene == drift_name && method == bench::name_of(bench::Method::implicit_euler)) continue;
       report_.add(bench::WorkPoint{
           .scene = scene, .sweep = "step", .method = method, .setting = setting, .seconds = seconds, .error = value});
     }
@@ -289,6 +321,13 @@ void add_methods(bench::WorkReport& report) {
     report.add(bench::MethodOptions{bench::name_of(method), bench::cvode_version(), bench::options_of(method)});
   }
 #endif
+  if (!bench::has_peer("peer_simbody")) return;
+  const std::string simbody =
+      "tests/bench/peer_simbody.cpp: a general multibody library in joint coordinates, built from bodies, pin joints "
+      "and a "
+      "custom force for each muscle; variable step, setAccuracy, the rest by default; ";
+  report.add(bench::MethodOptions{"Simbody, Runge-Kutta-Merson", "3.7 (Debian)", simbody + "order 4, explicit"});
+  report.add(bench::MethodOptions{"Simbody, CPodes BDF", "3.7 (Debian)", simbody + "BDF to order 5, Newton"});
 }
 
 }  // namespace
@@ -301,14 +340,14 @@ int main(int argc, char** argv) {
   add_methods(report);
   Case joint{.name = "lumped joint",
              .file = "revolute_joint_lumped",
-             .system = bench::lumped_joint(10.0),
+             .system = bench::system_of(bench::joint_parts(10.0, bench::muscle_density)),
              .end = 1000.0,
              .sample = 20.0,
              .steps = {20, 10, 5, 2, 1, 0.5, 0.2, 0.1},
              .reference_step = 0.05};
   Case trunk{.name = "trunk",
              .file = "elephant_trunk_lumped",
-             .system = bench::lumped_trunk(),
+             .system = bench::system_of(bench::trunk_parts(bench::muscle_density)),
              .end = quick ? 500.0 : 2000.0,
              .sample = 20.0,
              .steps = {20, 10, 5, 2, 1, 0.5, 0.25},
@@ -326,6 +365,30 @@ int main(int argc, char** argv) {
     comparison.sweep_cvode();
     if (one == &trunk) comparison.sweep_solvers({5, 1});
     if (one != &membrane) comparison.sweep_tolerances(one == &joint ? 2.0 : 5.0);
+  }
+  const std::vector<std::string> massless{"materials.silicone.density=1e-12"};
+  Case joint_without{.name = "lumped joint, massless muscles",
+                     .file = joint.file,
+                     .system = bench::system_of(bench::joint_parts(10.0, 0.0)),
+                     .general_rival = "joint",
+                     .overrides = massless,
+                     .end = joint.end,
+                     .sample = joint.sample,
+                     .steps = joint.steps,
+                     .reference_step = joint.reference_step};
+  Case trunk_without{.name = "trunk, massless muscles",
+                     .file = trunk.file,
+                     .system = bench::system_of(bench::trunk_parts(0.0)),
+                     .general_rival = "trunk",
+                     .overrides = massless,
+                     .end = trunk.end,
+                     .sample = trunk.sample,
+                     .steps = trunk.steps,
+                     .reference_step = trunk.reference_step};
+  for (const Case* one : {&joint_without, &trunk_without}) {
+    Comparison comparison(report, *one, budget);
+    comparison.sweep_ours();
+    comparison.sweep_simbody();
   }
   EnergyComparison(report, quick ? 20e3 : 200e3, budget).run();
   report.print();
