@@ -94,15 +94,14 @@ def factor(times_faster):
 
 
 def sentences(whole):
-    """One statement a scene and rival, at the smallest error that both reach and the range over all of them."""
+    """One statement a scene and rival: at the largest and the smallest error that both reach, and at 1e-3 where that lies between."""
     grouped = {}
     for entry in whole["ratios"]:
         grouped.setdefault((entry["scene"], entry["rival"]), []).append(entry)
     for (scene, rival), entries in grouped.items():
-        last = min(entries, key=lambda entry: entry["error"])
-        factors = [entry["times_faster"] for entry in entries]
-        spread = "" if len(entries) == 1 else f" (from {factor(min(factors))} to {factor(max(factors))} at errors up to {max(e['error'] for e in entries):.1g})"
-        yield f"{scene}: {factor(last['times_faster'])} than {rival} at an error of {last['error']:.2g}{spread}"
+        entries.sort(key=lambda entry: -entry["error"])
+        chosen = [e for i, e in enumerate(entries) if i in (0, len(entries) - 1) or math.isclose(e["error"], 1e-3)]
+        yield f"{scene}, against {rival}: " + ", ".join(f"{factor(e['times_faster'])} at an error of {e['error']:.1g}" for e in chosen)
 
 
 def summary(whole):

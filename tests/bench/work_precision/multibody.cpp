@@ -1,10 +1,8 @@
 /// Work against precision of lumped scenes: our stepper, textbook integrators and CVODE on the same systems.
-#include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numbers>
-#include <span>
 
+#include "bench/work_precision/energy_comparison.hpp"
 #include "bench/work_precision/integrators.hpp"
 #include "bench/work_precision/peer_run.hpp"
 #include "bench/work_precision/published_systems.hpp"
@@ -177,135 +175,6 @@ class Comparison {
   std::vector<std::vector<double>> reference_;
 };
 
-/// Energy of the joint without viscosity: what is lost or won over a long time.
-class EnergyComparison {
- public:
-  EnergyComparison(bench::WorkReport& report, double end, double budget)
-      : report_(report),
-        end_(end),
-        budget_(budget),
-        system_(bench::system_of(bench::joint_parts(0.0, bench::muscle_density))),
-        ready_(scene::read_scene(
-            bench::scene_path("revolute_joint_lumped"),
-            std::vector<std::string>{"materials.silicone.viscous.viscosity=0", "muscles.upper.lumped.viscosity=0",
-                                     "muscles.lower.lumped.viscosity=0"})) {
-    report.add(bench::Reference{
-        .scene = name,
-        .measure = "largest departure of the total energy from its start at samples every 20 ms in the last tenth of " +
-                   bench::short_number(1e-3 * end) + " s, relative to the largest kinetic energy",
-        .how = "closed form: the energy of an undamped joint under a held voltage is constant",
-        .uncertainty = 0.0});
-    report.add(bench::Reference{
-        .scene = drift_name,
-        .measure =
-            "mean energy of the last tenth less that of the first (Hann windows), relative to the largest kinetic "
-            "energy: what oscillates does not count, what is lost or won for good does",
-        .how = "closed form: the energy is constant",
-        .uncertainty = 1e-12});
-  }
-
-  void run() {
-    for (const double step : {10.0, 5.0, 2.0, 1.0, 0.5}) {
-      run_ours(step);
-      for (const auto method : {bench::Method::runge_kutta_4, bench::Method::implicit_euler, bench::Method::trapezoidal,
-                                bench::Method::generalised_alpha}) {
-        bench::Samples samples;
-        const double seconds =
-            bench::least_seconds(budget_, [&] { samples = bench::integrate(*system_, method, grid(step)); });
-        add(bench::name_of(method), step_text(step), seconds, error_of(samples));
-      }
-    }
-#ifdef MULDI_CVODE
-    for (const auto method : {bench::CvodeMethod::adams, bench::CvodeMethod::bdf}) {
-      for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
-        bench::Samples samples;
-        const double seconds = bench::least_seconds(
-            budget_, [&] { samples = bench::integrate_with_cvode(*system_, method, tolerance, grid(20.0)); });
-        add(bench::name_of(method), tolerance_text(tolerance), seconds, error_of(samples));
-      }
-    }
-#endif
-  }
-
- private:
-  static constexpr const char* name = "undamped lumped joint, energy";
-  static constexpr const char* drift_name = "undamped lumped joint, energy drift";
-
-  bench::Grid grid(double step) const { return {.step = step, .sample = 20.0, .end = end_}; }
-
-  /// Relative to the largest kinetic energy.
-  struct EnergyError {
-    double departure = std::nan("");  ///< largest, in the last tenth
-    double drift = std::nan("");      ///< of the mean of the last tenth from that of the first
-  };
-
-  /// Mean with a Hann window, which a bounded oscillation does not move.
-  static double windowed_mean(std::span<const double> values) {
-    double sum = 0.0;
-    double weights = 0.0;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const double s = std::sin(std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(values.size()));
-      sum += s * s * values[i];
-      weights += s * s;
-    }
-    return sum / weights;
-  }
-
-  static EnergyError error_of(const std::vector<double>& kinetic, const std::vector<double>& total) {
-    const std::size_t tenth = total.size() / 10;
-    const std::span<const double> all(total);
-    double departure = 0.0;
-    for (const double value : all.last(tenth)) departure = std::max(departure, std::abs(value));
-    const double largest = *std::max_element(kinetic.begin(), kinetic.end());
-    return {.departure = departure / largest,
-            .drift = std::abs(windowed_mean(all.last(tenth)) - windowed_mean(all.first(tenth))) / largest};
-  }
-
-  EnergyError error_of(const bench::Samples& samples) const {
-    if (!samples.completed) return {};
-    std::vector<double> kinetic, total;
-    for (std::size_t i = 0; i < samples.x.size(); ++i) {
-      kinetic.push_back(system_->kinetic(samples.x[i], samples.v[i]));
-      total.push_back(kinetic.back() + system_->potential(samples.x[i]));
-    }
-    return error_of(kinetic, total);
-  }
-
-  void run_ours(double step) {
-    const bench::Read keep = [](const variational::State&, std::vector<double>&) {};
-    const double seconds = bench::least_seconds(budget_, [&] { bench::march(ready_, grid(step), {}, keep); });
-    // Energies in a run of their own: no rival's time contains them either.
-    variational::NodeEvaluator nodes(*ready_.built.model, "auto");
-    variational::NodeValues values;
-    std::vector<double> u(ready_.built.model->controls.size());
-    ready_.built.model->evaluate_controls(0.0, u);
-    nodes.evaluate(ready_.state, u, u, values);
-    const double start = values.total.kinetic + values.total.potential();
-    std::vector<double> kinetic, total;
-    bench::march(ready_, grid(step), {}, [&](const variational::State& state, std::vector<double>&) {
-      nodes.evaluate(state, u, u, values);
-      kinetic.push_back(values.total.kinetic);
-      total.push_back(values.total.kinetic + values.total.potential() - start);
-    });
-    add(ours, step_text(step), seconds, error_of(kinetic, total));
-  }
-
-  void add(const std::string& method, const std::string& setting, double seconds, const EnergyError& error) {
-    for (const auto& [scene, value] : {std::pair(std::string(name), error.departure), {drift_name, error.drift}}) {
-      // It has lost all that it can lose within the first tenth.
-      if (scene == drift_name && method == bench::name_of(bench::Method::implicit_euler)) continue;
-      report_.add(bench::WorkPoint{
-          .scene = scene, .sweep = "step", .method = method, .setting = setting, .seconds = seconds, .error = value});
-    }
-  }
-
-  bench::WorkReport& report_;
-  double end_;
-  double budget_;
-  std::unique_ptr<bench::MinimalSystem> system_;
-  bench::ReadyScene ready_;
-};
-
 void add_methods(bench::WorkReport& report) {
   report.add(bench::MethodOptions{
       ours, "this commit",
@@ -390,6 +259,6 @@ int main(int argc, char** argv) {
     comparison.sweep_ours();
     comparison.sweep_simbody();
   }
-  EnergyComparison(report, quick ? 20e3 : 200e3, budget).run();
+  bench::compare_energies(report, quick ? 20e3 : 200e3, budget);
   report.print();
 }
