@@ -80,6 +80,28 @@ def ratios(whole):
     return found
 
 
+def reaches(points, floor):
+    return any(error is not None and error <= floor for _, error, _ in points)
+
+
+def apart(whole):
+    """Pairs of curves that share no error: ours is everywhere better, or everywhere worse."""
+    for scene in scenes(whole):
+        floor = 2.0 * (reference(whole, scene)["uncertainty"] or 0.0)
+        for sweep in MIDDLE:
+            all_curves = curves(whole, scene, sweep)
+            ours = frontier([p for m, points in all_curves.items() if is_ours(m) for p in points], floor)
+            for method, points in all_curves.items():
+                theirs = frontier(points, floor)
+                if is_ours(method) or not ours or not theirs:
+                    continue
+                # Errors below the floor are smaller than what can be told.
+                if ours[0][1] < theirs[-1][1] and not reaches(points, floor):
+                    yield scene, method, ours[0], theirs[-1], "smaller than any of"
+                elif theirs[0][1] < ours[-1][1] and not any(reaches(p, floor) for m, p in all_curves.items() if is_ours(m)):
+                    yield scene, method, ours[-1], theirs[0], "larger than all of"
+
+
 def number(value, digits=3):
     return "-" if value is None else f"{value:.{digits}g}"
 
@@ -104,8 +126,16 @@ def sentences(whole):
         yield f"{scene}, against {rival}: " + ", ".join(f"{factor(e['times_faster'])} at an error of {e['error']:.1g}" for e in chosen)
 
 
+def apart_sentences(whole):
+    for scene, method, (seconds, error), (rival_seconds, rival_error), relation in apart(whole):
+        which = "largest" if relation.startswith("smaller") else "smallest"
+        nearest = "smallest" if which == "largest" else "largest"
+        yield (f"{scene}: our {which} error ({error:.1g} in {milliseconds(seconds)} ms) is {relation} {method} "
+               f"({nearest}: {rival_error:.1g} in {milliseconds(rival_seconds)} ms)")
+
+
 def summary(whole):
-    return "\n".join(sentences(whole))
+    return "\n".join([*sentences(whole), *apart_sentences(whole)])
 
 
 def table(head, rows):
@@ -153,7 +183,7 @@ def text(whole, figures):
     parts = [INTRODUCTION]
     if whole["quick"]:
         parts.append("A quick run (`--quick`): fewer points and coarser references than the committed page has.")
-    parts += ["## At equal error", "\n".join(f"- {sentence}" for sentence in sentences(whole)), "## Figures"]
+    parts += ["## At equal error", "\n".join(f"- {sentence}" for sentence in (*sentences(whole), *apart_sentences(whole))), "## Figures"]
     parts += [f"![{caption}]({path.name})" for caption, path in figures]
     parts += ["## The same as a table", ratio_table(whole), "## Machine and build", machine, "## Methods with all options", methods, "## Scenes"]
     parts += [scene_section(whole, scene) for scene in scenes(whole)]
