@@ -177,11 +177,12 @@ INTRODUCTION = """\
 # What is skipped
 
 Written by `tools/bench skipped` from its own measurements. The same scene with and without one part, in turn on one thread:
-processor time and peak memory of the whole process, from its start to the closed file, the least of {repeats} runs. Viscosity
-and voltage are so small where they are present that the system moves as without them; where the numbers of Newton iterations
-differ all the same, they are given. That the absent
-parts are truly absent is asserted by `tests/unit/app/test_skipped.py` and `tests/unit/app/test_record.py`: no page of the optimiser's library
-mapped, no unknown potential, no viscous term, no mass in statics, no finite element, no unit system, no group in the file."""
+processor time and peak memory of the whole process, from its start to the closed file, the least of {repeats} runs. Where a
+viscosity or a voltage is present it is so small that the system moves as without it.
+
+That the absent parts are truly absent is asserted by `tests/unit/app/test_skipped.py` and `tests/unit/app/test_record.py`: no
+page of the optimiser's library mapped, no unknown potential, no viscous term, no mass in statics, no finite element, no unit
+system, no group in the file."""
 
 
 def cell(value, digits=3):
