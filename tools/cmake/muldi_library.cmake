@@ -17,6 +17,14 @@ function(muldi_library folder)
   endif()
 endfunction()
 
+# muldi_inject(<source> <faults>)
+#   compiles a source of the folder with the fault MULDI_MUTATION, if it is one of these; tools/mutation sets it.
+function(muldi_inject source)
+  if(MULDI_MUTATION IN_LIST ARGN)
+    set_source_files_properties(${source} PROPERTIES COMPILE_DEFINITIONS MULDI_MUTATION=${MULDI_MUTATION})
+  endif()
+endfunction()
+
 # What nearly every test includes, parsed once: a quarter of the time of compiling the tests. Sources still include what they
 # use. A program, since it is compiled with the options of programs.
 function(muldi_test_headers)
