@@ -60,6 +60,7 @@ void add_optimise(CLI::App& program, CommandLine& line) {
   CLI::App* verb = program.add_subcommand("optimise", "find the controls that a scene asks for, and replay them");
   verb->alias("optimize");
   add_run_options(*verb, line);
+  verb->add_option("--resume", line.run.resume, "refused with the guess by which to go on instead")->type_name("FILE");
 }
 
 void add_check(CLI::App& program, CommandLine& line) {

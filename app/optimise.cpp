@@ -113,8 +113,8 @@ void report(const pipeline::Optimised& result, const scene::Scene& scene, const 
   if (result.outcome.completed()) {
     base::log_info(base::format("completed: {}", path));
   } else if (result.outcome.status == variational::Status::interrupted) {
-    base::log_warning(
-        base::format("interrupted; the best iterate is in {}: go on with `guess: {{from: {}}}`", path, path));
+    base::log_warning(base::format(
+        "interrupted; the best iterate is in {0}: go on with --set 'optimal_control.guess={{from: {0}}}'", path));
   } else {
     base::log_error(base::format("{}: {} (the best iterate is in {})", status, result.outcome.sentence, path));
   }
@@ -123,6 +123,13 @@ void report(const pipeline::Optimised& result, const scene::Scene& scene, const 
 }  // namespace
 
 int optimise(const RunArguments& arguments) {
+  if (!arguments.resume.empty()) {
+    throw base::InputError(base::format(
+        "'{0}' cannot be resumed: the solver of an optimisation keeps no state from which it could go on as if "
+        "unbroken; "
+        "start from the last iterate instead, into another file: --set 'optimal_control.guess={{from: {0}}}'",
+        arguments.resume));
+  }
   pipeline::RunContext context;
   context.command_line = arguments.command_line;
   context.threads = arguments.threads;

@@ -30,9 +30,7 @@ Transcription::Transcription(const Problem& problem, std::span<const WeightedObj
   find_sizes(guess);
   dynamics_ = std::make_unique<DiscreteDynamics>(problem, layout_, guess);
   for (const std::string& term : dynamics_->pieces().refused) {
-    faults_.push_back({"", "forces on " + term +
-                               " have no second derivatives for optimal control; where the joint closes "
-                               "a loop, list the joints of the loop in another order, so that another one closes it"});
+    faults_.push_back({"", "forces on " + term + " have no second derivatives for optimal control"});
   }
   if (!faults_.empty()) return;
   make_ends(guess);

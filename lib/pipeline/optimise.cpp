@@ -74,7 +74,7 @@ class Stages {
     const int n_starts = n_guesses(scene_);
     bool interrupted = false;
     for (int start = 0; start < n_starts && !interrupted; ++start) {
-      control::Trajectory guess = start == 0 ? std::move(first) : make_guess(scene_, problem_.problem, start);
+      control::Trajectory guess = start == 0 ? std::move(first) : make_guess(scene_, built_, problem_.problem, start);
       std::vector<StageEnd> ends = solve(start, std::move(guess), record);
       const StageEnd& last = ends.back();
       if (last.result.status == SolveStatus::unavailable) throw base::EnvironmentError(last.result.sentence);
@@ -135,7 +135,7 @@ void validate_optimal_control(const scene::Scene& scene, const build::BuiltModel
   variational::State start;
   if (!initial_state(scene, built, earlier, start).completed()) return;
   const OptimalProblem problem = build_optimal_problem(scene, built, start.x);
-  const control::Trajectory guess = make_guess(scene, problem.problem, 0);
+  const control::Trajectory guess = make_guess(scene, built, problem.problem, 0);
   refuse_faults(scene, control::find_faults(problem.problem, guess));
   if (scene.optimal_control->replay) build_replay(scene);
 }
@@ -154,7 +154,7 @@ Optimised optimise(const scene::Scene& scene, const build::BuiltModel& built, re
     result.outcome = initial_state(scene, built, setup.earlier, start);
     if (result.outcome.completed()) {
       problem.emplace(build_optimal_problem(scene, built, start.x));
-      guess = make_guess(scene, problem->problem, 0);
+      guess = make_guess(scene, built, problem->problem, 0);
       refuse_faults(scene, control::find_faults(problem->problem, *guess));
     }
     rows.emplace(recorder, scene, built, NodeRows::Kind::dynamics,

@@ -105,7 +105,7 @@ control::SolveResult checked_by_the_solver(const std::string& name, const Overri
   variational::State start;
   EXPECT_TRUE(pipeline::initial_state(scene, built, {}, start).completed());
   const pipeline::OptimalProblem problem = pipeline::build_optimal_problem(scene, built, start.x);
-  return control::solve(problem.problem, problem.stages.back(), pipeline::make_guess(scene, problem.problem, 0),
+  return control::solve(problem.problem, problem.stages.back(), pipeline::make_guess(scene, built, problem.problem, 0),
                         {.max_iterations = 1, .check_derivatives = true});
 }
 

@@ -155,6 +155,35 @@ TEST(Nlp, DerivativesOfClosedLoops) {
   expect_clean(at.problem, test::feasibility(), resting_guess(at.problem, 5.0));
 }
 
+/// A four-bar linkage with spring, damper, stop and drive on the joint that closes the loop.
+test::RigidSystem linkage_driven_at_its_cut() {
+  test::RigidSystem system = test::four_bar({}, test::earth_gravity);
+  system.joint_forces.push_back({.joint = 3,
+                                 .stiffness = 200.0,
+                                 .rest = 0.1,
+                                 .damping = 10.0,
+                                 .stops = {.upper = -0.5, .stiffness = 300.0, .damping = 20.0},
+                                 .control = 0});
+  system.joint_forces.push_back({.joint = 0, .damping = 5.0});
+  system.controls.push_back({.name = "torque", .unit = {}, .function = 0.0});
+  return system;
+}
+
+TEST(Nlp, DerivativesOfForcesOnLoopClosingJoints) {
+  ControlCase at(linkage_driven_at_its_cut());
+  ASSERT_EQ(test::manifold_of(*at.model).tree().cut_joints, std::vector<int>{3});
+  at.set_horizon(3, 5.0);
+  at.seek_plain(1e3);
+  at.start_at_rest();
+  at.problem.final.coordinates.push_back({.name = "joints.crank", .rate = 0, .value = 0.3});
+  expect_clean(at.problem, {{1.0, KineticEnergy{}}}, resting_guess(at.problem, 5.0));
+  at.problem.horizon.longest_step = 8.0;
+  expect_clean(at.problem, {{1.0, FinalTime{}}}, resting_guess(at.problem, 6.0));
+  at.problem.final.coordinates.clear();
+  at.problem.final.equilibrium = {20.0};
+  expect_clean(at.problem, test::feasibility(), resting_guess(at.problem, 5.0));
+}
+
 TEST(Nlp, PatternsHoldEveryEntry) {
   // Differences by every unknown touch no entry outside the patterns.
   ControlCase at = test::trunk_case(2, 25.0);
