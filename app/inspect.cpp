@@ -8,6 +8,7 @@
 #include "results/info.hpp"
 #include "scene/read_scene.hpp"
 #include "scene/reference.hpp"
+#include "scene/study.hpp"
 
 namespace muldi::app {
 
@@ -22,8 +23,8 @@ int info(const std::string& file) {
   return ExitCode::success;
 }
 
-int schema(bool markdown) {
-  std::fputs((markdown ? scene::reference_text() : scene::schema_text()).c_str(), stdout);
+int schema(bool of_studies, bool markdown) {
+  std::fputs((of_studies ? scene::study_schema_text() : markdown ? scene::reference_text() : scene::schema_text()).c_str(), stdout);
   return ExitCode::success;
 }
 

@@ -8,45 +8,38 @@
 
 namespace muldi::pipeline {
 
-StaticsRun::StaticsRun(const scene::Scene& scene, const build::BuiltModel& built, results::Recorder& recorder)
-    : scene_(scene),
-      built_(built),
-      recorder_(recorder),
+StaticLoads static_loads(const scene::Scene& scene, const build::BuiltModel& built) {
+  const scene::Statics& said = *scene.statics;
+  StaticLoads loads;
+  loads.fixed.resize(built.model->controls.size());
+  built.model->evaluate_controls(0.0, loads.fixed);
+  loads.direction.assign(loads.fixed.size(), 0.0);
+  loads.options.steps = said.steps;
+  if (said.control) {
+    const auto swept = static_cast<std::size_t>(scene.controls.index(said.control->name));
+    loads.fixed[swept] = 0.0;
+    loads.direction[swept] = 1.0;
+    loads.options.from = said.from;
+    loads.options.to = *said.to;
+  } else {
+    std::swap(loads.fixed, loads.direction);
+  }
+  loads.options.continuation = said.continuation == scene::Continuation::natural ? statics::Continuation::natural
+                                                                                 : statics::Continuation::arc_length;
+  loads.options.equilibrium = {.tolerance = scene.solver.tolerance, .substructures = built.solid_linear};
+  return loads;
+}
+
+EquilibriumRows::EquilibriumRows(results::Recorder& recorder, const scene::Scene& scene, const build::BuiltModel& built)
+    : built_(built),
+      last_load_(scene.statics->control ? *scene.statics->to : 1.0),
       rows_(recorder, scene, built, NodeRows::Kind::statics, static_cast<std::size_t>(scene.statics->steps) + 1),
       parts_(built.model->parts().size()),
       zero_q_(Eigen::VectorXd::Zero(built.model->n_q())),
       zero_v_(Eigen::VectorXd::Zero(built.manifold->n_v())),
       constraint_force_(zero_q_) {}
 
-void StaticsRun::prepare() {
-  state_ = starting_point(scene_, built_);
-  make_sweep();
-}
-
-void StaticsRun::make_sweep() {
-  const scene::Statics& said = *scene_.statics;
-  std::vector<double> u(built_.model->controls.size());
-  built_.model->evaluate_controls(0.0, u);
-  std::vector<double> direction(u.size(), 0.0);
-  statics::SweepOptions options{.steps = said.steps};
-  if (said.control) {
-    const auto swept = static_cast<std::size_t>(scene_.controls.index(said.control->name));
-    u[swept] = 0.0;
-    direction[swept] = 1.0;
-    options.from = said.from;
-    options.to = *said.to;
-  } else {
-    std::swap(u, direction);
-  }
-  options.continuation = said.continuation == scene::Continuation::natural ? statics::Continuation::natural
-                                                                           : statics::Continuation::arc_length;
-  options.equilibrium = {.tolerance = scene_.solver.tolerance, .substructures = built_.solid_linear};
-  sweep_.emplace(*built_.model, std::move(u), std::move(direction), options);
-}
-
-double StaticsRun::last_load() const { return scene_.statics->control ? *scene_.statics->to : 1.0; }
-
-void StaticsRun::record(const statics::SweepPoint& point) {
+void EquilibriumRows::write(const statics::SweepPoint& point) {
   const std::span<const double> x(point.state.x.data(), static_cast<std::size_t>(point.state.x.size()));
   built_.model->energies({.x = x, .q = point.q, .v = zero_q_, .u = point.u}, parts_);
   constraint_force_ = -point.force;
@@ -66,8 +59,17 @@ void StaticsRun::record(const statics::SweepPoint& point) {
                .residual = point.report.residual,
                .violation = built_.manifold->violation(point.q),
                .parts = parts_,
-               .last = point.load == last_load()},
+               .last = point.load == last_load_},
               view);
+}
+
+StaticsRun::StaticsRun(const scene::Scene& scene, const build::BuiltModel& built, results::Recorder& recorder)
+    : scene_(scene), built_(built), recorder_(recorder), rows_(recorder, scene, built) {}
+
+void StaticsRun::prepare() {
+  state_ = starting_point(scene_, built_);
+  StaticLoads loads = static_loads(scene_, built_);
+  sweep_.emplace(*built_.model, std::move(loads.fixed), std::move(loads.direction), loads.options);
 }
 
 void StaticsRun::report_critical(const std::vector<statics::CriticalPoint>& points, const RunContext& context) {
@@ -92,7 +94,7 @@ Outcome StaticsRun::run(RunContext& context) {
   long row = 0;
   const statics::SweepResult result = sweep_->run(state_, {.record =
                                                                [&](const statics::SweepPoint& point) {
-                                                                 record(point);
+                                                                 rows_.write(point);
                                                                  if (context.progress) {
                                                                    context.progress(row++, said.steps, point.load);
                                                                  }
