@@ -89,6 +89,21 @@ void StaticsRun::report_critical(const std::vector<statics::CriticalPoint>& poin
   }
 }
 
+void StaticsRun::report_changes(const std::vector<statics::BranchChange>& changes, const RunContext& context) {
+  int number = 0;
+  for (const statics::BranchChange& change : changes) {
+    const std::string count = ++number == 1 ? "" : "_" + std::to_string(number);
+    recorder_.set_attribute("statics", "jump_load_before" + count, change.before);
+    recorder_.set_attribute("statics", "jump_load_after" + count, change.after);
+    if (!context.warn) continue;
+    context.warn(
+        base::format("statics: between the loads {:.10g} and {:.10g} the equilibrium {}; continuation: arc_length "
+                     "follows the branch that it leaves",
+                     change.before, change.after,
+                     change.jumps ? "jumps to another branch (snap-through)" : "goes over to another branch"));
+  }
+}
+
 Outcome StaticsRun::run(RunContext& context) {
   const scene::Statics& said = *scene_.statics;
   long row = 0;
@@ -106,6 +121,7 @@ Outcome StaticsRun::run(RunContext& context) {
     recorder_.set_attribute("statics", "critical_load_below", result.first_bad);
   }
   report_critical(result.critical, context);
+  report_changes(result.changes, context);
   const auto status = result.end == End::completed             ? variational::Status::completed
                       : result.end == End::interrupted         ? variational::Status::interrupted
                       : result.end == End::loss_of_equilibrium ? variational::Status::loss_of_equilibrium

@@ -45,6 +45,7 @@ class StaticsRun {
 
  private:
   /// Limit points and branches that the arc length has passed: attributes and messages.
+  void report_changes(const std::vector<statics::BranchChange>& changes, const RunContext& context);
   void report_critical(const std::vector<statics::CriticalPoint>& points, const RunContext& context);
 
   const scene::Scene& scene_;

@@ -130,8 +130,12 @@ bool ArcLength::locate_limit(const CurvePoint& a, const CurvePoint& b, double ar
   CurvePoint trial;
   int side = 0;
   for (int k = 0; k < most_trials; ++k) {
-    const double s = (low * at_high - high * at_low) / (at_high - at_low);
-    if (!advance(a, s, trial)) return false;
+    double s = (low * at_high - high * at_low) / (at_high - at_low);
+    while (!advance(a, s, trial)) {
+      // On a long step the corrector may fail where it succeeds closer by.
+      s = 0.5 * (low + s);
+      if (s - low < critical_accuracy) return false;
+    }
     found = {.kind = CriticalPoint::Kind::limit, .load = trial.load};
     const double value = trial.load_tangent;
     if (std::abs(value) * (high - low) < critical_accuracy) return true;
