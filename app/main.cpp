@@ -94,7 +94,7 @@ void add_others(CLI::App& program, CommandLine& line) {
   info->add_option("file", line.first, "result file")->required()->type_name("OUT.h5");
 
   CLI::App* schema = program.add_subcommand("schema", "the JSON Schema of the scene format");
-  schema->add_flag("--markdown", line.markdown, "a page of every key instead, schemas/SCENE.md");
+  schema->add_flag("--markdown", line.markdown, "a page of every key instead, schemas/SCENE.md")->excludes("--study");
   schema->add_flag("--study", line.study_schema, "that of study files");
 }
 
