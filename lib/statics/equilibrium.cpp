@@ -11,6 +11,7 @@ namespace {
 constexpr double longest_increment = 0.5;     // dimensionless: rad, or sizes of the scene
 constexpr double longest_displacement = 0.1;  // of a substructure, in its sizes: nodes close to each other move by it
 constexpr int max_halvings = 30;
+constexpr int most_probes = 40;           // increments beyond a failure, to see what they lead to
 constexpr double line_search_goal = 0.9;  // |work of the residual along the increment| relative to the start
 constexpr double free_motion = 1e-11;     // smallest over largest eigenvalue of a motion without stiffness
 constexpr double round_off_residual = 1e-12;
@@ -218,7 +219,21 @@ EquilibriumReport EquilibriumSolver::solve(StaticState& state, std::span<const d
   shortened_by_.clear();
   EquilibriumReport report = iterate(state, u);
   if (!report.converged && report.inadmissible.empty()) report.inadmissible = shortened_by_;
+  if (!report.converged && report.inadmissible.empty()) report.inadmissible = limit_of_increment();
   return report;
+}
+
+std::string EquilibriumSolver::limit_of_increment() {
+  if (parts_.empty() || !step_.q.allFinite()) return {};
+  const double length = length_of(step_);
+  if (!(length > 0.0)) return {};
+  // Along the last increment, in steps that are taken whole, until something gives way.
+  for (int k = 1; k <= most_probes; ++k) {
+    q_ += step_.q / length;
+    const std::string found = model_.inadmissible_anywhere(q_);
+    if (!found.empty()) return "the forces move on until " + found;
+  }
+  return {};
 }
 
 EquilibriumReport EquilibriumSolver::iterate(StaticState& state, std::span<const double> u) {

@@ -49,7 +49,7 @@ struct EquilibriumReport {
   Stability stability = Stability::stable;
   int iterations = 0;
   double residual = 0.0;     ///< relative
-  std::string inadmissible;  ///< why the terms could not be evaluated: collapsed muscle, inverted cell
+  std::string inadmissible;  ///< why the terms could not be evaluated, or what limits: collapsed muscle, inverted cell
 };
 
 class EquilibriumSolver {
@@ -111,6 +111,8 @@ class EquilibriumSolver {
   void scale_increment(double factor);
   void measure_residual();
   EquilibriumReport iterate(StaticState& state, std::span<const double> u);
+  /// After a failure without a reason: what becomes inadmissible further along the last increment; changes q_.
+  std::string limit_of_increment();
   double line_search(const StaticState& start, StaticState& trial, std::span<const double> u,
                      std::string& inadmissible);
 

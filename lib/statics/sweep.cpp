@@ -66,7 +66,8 @@ bool Sweep::first_equilibrium(StaticState& state, EquilibriumReport& report, Swe
         "equilibrium";
   } else {
     result.end = SweepResult::End::loss_of_equilibrium;
-    result.sentence = report.inadmissible.empty() ? "no stable equilibrium at the first load" : report.inadmissible;
+    result.sentence = "no stable equilibrium at the first load";
+    if (!report.inadmissible.empty()) result.sentence += ": " + report.inadmissible;
   }
   result.last_good = options_.from;
   result.first_bad = options_.from;

@@ -35,6 +35,9 @@ class SolidSolver final : public model::SubstructureSolver {
   std::string name() const override;
 
  private:
+  /// Takes a factor in place of the iteration if steps of this length are stiff, by the matrix of the reference, so
+  /// that a restart decides alike.
+  void decide(const model::IntervalPoint& at);
   void weigh_pressures(const model::IntervalPoint& at);
   void assemble(const model::IntervalPoint& at);
   void back_substitute();
@@ -58,6 +61,7 @@ class SolidSolver final : public model::SubstructureSolver {
   const Solid& solid_;
   model::Linearisation kind_;
   bool factorised_ = false;
+  bool open_ = false;  ///< the first matrix decides on the solver
   math::SymmetricBlockPattern pattern_;
   std::vector<std::int32_t> slots_;
   int expected_negative_ = 0;
