@@ -51,6 +51,11 @@ void expect_return(const std::string& name, const test::RigidSystem& system, con
 
 TEST(Reversal, BringsThePendulumBack) { expect_return("pendulum", test::pendulum(), Eigen::VectorXd::Zero(1), 10.0); }
 
+TEST(Reversal, BringsALoopWhoseRowsTurnBack) {
+  const test::RigidSystem system = test::quick_return(test::earth_gravity);
+  expect_return("quick-return", system, test::make_model(system)->manifold->reference(), 1.0);
+}
+
 TEST(Reversal, BringsAClosedLoopBack) {
   const test::RigidSystem system = test::four_bar({}, test::earth_gravity);
   expect_return("four-bar", system, test::make_model(system)->manifold->reference(), 1.0);

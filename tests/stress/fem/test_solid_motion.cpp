@@ -116,10 +116,11 @@ TEST(SolidMotion, IsReversibleWithoutViscosityOnly) {
   }
 }
 
-TEST(SolidMotion, AStiffCubeSpinsFreelyWithoutSpuriousPressure) {
-  // kappa/mu = 4000, 0.1 rad a step; the dilatation of the middle configuration would give kappa sin^2(.05).
+/// The largest pressure over rho omega^2 L^2 in 200 steps of a cube with kappa/mu = 4000 that spins freely; the
+/// dilatation of the middle configuration would give kappa sin^2(turn/2).
+double pressure_in_spin(double turn) {
   const double dt = 0.3;
-  const double omega = 0.1 / dt;
+  const double omega = turn / dt;
   test::SolidSystem system = test::solid_box({2, 2, 2}, {-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5});
   system.fill(test::rubber(mu, (4000.0 - 2.0 / 3.0) * mu, Formulation::mean_dilatation), mu,
               Formulation::mean_dilatation);
@@ -129,15 +130,22 @@ TEST(SolidMotion, AStiffCubeSpinsFreelyWithoutSpuriousPressure) {
   double largest = 0.0;
   while (state.step < 200) {
     const variational::StepReport report = stepper.advance(state, {});
-    ASSERT_EQ(report.status, variational::Status::running) << report.sentence;
+    EXPECT_EQ(report.status, variational::Status::running) << report.sentence;
+    if (report.status != variational::Status::running) break;
     largest = std::max(largest, test::solid_in(*model).pressures(state.y).lpNorm<Eigen::Infinity>());
   }
-  test::record_figure("14", "stiff cube, 0.1 rad a step, pressure over rho omega^2 L^2",
-                      largest / (1e-3 * omega * omega), 10.0);
-  EXPECT_GT(largest, 0.0);
   const int corner = system.node_at({0.5, 0.5, 0.5});
   EXPECT_NEAR(state.q.segment<3>(3 * corner).norm(), std::sqrt(0.75), 1e-2);
-  std::cout << "largest pressure over rho omega^2 L^2: " << largest / (1e-3 * omega * omega) << '\n';
+  return largest / (1e-3 * omega * omega);
+}
+
+TEST(SolidMotion, AStiffCubeSpinsFreelyWithoutSpuriousPressure) {
+  for (const double turn : {0.02, 0.1}) {
+    const double pressure = pressure_in_spin(turn);
+    EXPECT_GT(pressure, 0.0);
+    test::record_figure("14", "stiff cube, " + test::short_number(turn) + " rad a step, pressure over rho omega^2 L^2",
+                        pressure, 10.0);
+  }
 }
 
 /// What viscosity takes of the kinetic energy of a cube that spins freely: in the first half of the steps, and then.

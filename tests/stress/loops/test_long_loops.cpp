@@ -28,6 +28,20 @@ TEST(LongLoops, FourBarStaysClosedAndKeepsItsEnergyBand) {
   test::record_figure("20", "four-bar, 1e5 steps, violation of constraints", coarse.violation(), 1e-11);
 }
 
+TEST(LongLoops, AQuickReturnWhoseRowsTurnKeepsItsEnergyBand) {
+  const auto model = test::make_model(test::quick_return(gravity));
+  ASSERT_EQ(test::manifold_of(*model).tree().cut_joints, std::vector<int>{4}) << "the sliding joint closes the loop";
+  ASSERT_EQ(model->manifold->n_v() - model->manifold->n_c(), 1);
+  const variational::State start = test::state_at_rest(*model);
+  const test::EnergyHistory coarse = test::energy_history(*model, start, 2.0, 20'000);
+  const test::EnergyHistory fine = test::energy_history(*model, start, 1.0, 40'000);
+  test::record_figure("20", "quick-return, 2e4 steps, energy band of the last tenth over that of the first",
+                      coarse.band().last_tenth / coarse.band().first_tenth, 1.1);
+  test::record_near("20", "quick-return, energy band over that of half the step", coarse.band().all / fine.band().all,
+                    4.0, 0.2);
+  test::record_figure("20", "quick-return, 4e4 steps, violation of constraints", fine.violation(), 1e-11);
+}
+
 TEST(LongLoops, BennettLinkageTurnsThroughWithItsOneFreedom) {
   const auto model = test::make_model(test::bennett(1.0));
   ASSERT_EQ(model->manifold->n_v() - model->manifold->n_c(), 1);

@@ -86,6 +86,7 @@ TEST(Multipliers, ForAllConstraintsGiveTheSameMotion) {
   expect_same("double pendulum", test::double_pendulum(), 2.0, 200);
   expect_same("muscle joint", test::muscle_joint(3e4), 2.0, 200);
   expect_same("four-bar", test::four_bar({}, test::earth_gravity), 1.0, 200);
+  expect_same("quick-return", test::quick_return(test::earth_gravity), 1.0, 200);
 }
 
 }  // namespace
