@@ -1,8 +1,12 @@
 /// Work against precision of lumped scenes: our stepper, textbook integrators and CVODE on the same systems.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numbers>
+#include <span>
 
 #include "bench/work_precision/integrators.hpp"
+#include "bench/work_precision/peer_run.hpp"
 #include "bench/work_precision/published_systems.hpp"
 #include "bench/work_precision/scene_motion.hpp"
 #include "bench/work_precision/work_report.hpp"
@@ -20,6 +24,8 @@ struct Case {
   std::string name;  // of the scene in the report
   std::string file;
   std::unique_ptr<bench::MinimalSystem> system;
+  std::string general_rival = {};  // the system's word for peer_simbody
+  std::vector<std::string> overrides = {};
   double end = 0.0;
   double sample = 0.0;
   std::vector<double> steps = {};
@@ -42,13 +48,17 @@ class Comparison {
       : report_(report),
         case_(one),
         budget_(budget),
-        ready_(scene::read_scene(bench::scene_path(one.file))),
+        ready_(scene::read_scene(bench::scene_path(one.file), one.overrides)),
         chart_(ready_.built.model->manifold->make_chart()) {
     const bench::Coordinates from = one.system->start();
     start_.assign(from.data(), from.data() + from.size());
     chart_->coordinates(ready_.state.x, theta_);
     our_start_ = theta_;
     make_reference();
+  }
+
+  void sweep_ours() {
+    for (const double step : case_.steps) run_ours("step", ours, step_text(step), step, {});
   }
 
   void sweep_steps() {
@@ -76,6 +86,29 @@ class Comparison {
       }
     }
 #endif
+  }
+
+  /// Another general program, with muscles that have no mass: it has no element of theirs.
+  void sweep_simbody() {
+    for (const auto& [word, method] :
+         {std::pair("merson", "Simbody, Runge-Kutta-Merson"), {"cpodes", "Simbody, CPodes BDF"}}) {
+      for (const double accuracy : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
+        const auto n = static_cast<std::size_t>(case_.system->n());
+        const auto n_samples = static_cast<std::size_t>(std::lround(case_.end / case_.sample));
+        const auto numbers =
+            bench::run_peer("peer_simbody",
+                            case_.general_rival + " " + word + " " + bench::short_number(accuracy) + " " +
+                                bench::short_number(case_.end) + " " + bench::short_number(case_.sample),
+                            static_cast<int>(1 + n * n_samples));
+        if (!numbers) return;
+        std::vector<std::vector<double>> rows;
+        for (std::size_t i = 0; i < n_samples; ++i) {
+          const auto from = numbers->begin() + static_cast<std::ptrdiff_t>(1 + i * n);
+          rows.emplace_back(from, from + static_cast<std::ptrdiff_t>(n));
+        }
+        add("step", method, "accuracy " + bench::short_number(accuracy), numbers->front(), rows);
+      }
+    }
   }
 
   void sweep_tolerances(double step) {
@@ -151,7 +184,7 @@ class EnergyComparison {
       : report_(report),
         end_(end),
         budget_(budget),
-        system_(bench::lumped_joint(0.0)),
+        system_(bench::system_of(bench::joint_parts(0.0, bench::muscle_density))),
         ready_(scene::read_scene(
             bench::scene_path("revolute_joint_lumped"),
             std::vector<std::string>{"materials.silicone.viscous.viscosity=0", "muscles.upper.lumped.viscosity=0",
@@ -162,6 +195,13 @@ class EnergyComparison {
                    bench::short_number(1e-3 * end) + " s, relative to the largest kinetic energy",
         .how = "closed form: the energy of an undamped joint under a held voltage is constant",
         .uncertainty = 0.0});
+    report.add(bench::Reference{
+        .scene = drift_name,
+        .measure =
+            "mean energy of the last tenth less that of the first (Hann windows), relative to the largest kinetic "
+            "energy: what oscillates does not count, what is lost or won for good does",
+        .how = "closed form: the energy is constant",
+        .uncertainty = 1e-12});
   }
 
   void run() {
@@ -172,7 +212,7 @@ class EnergyComparison {
         bench::Samples samples;
         const double seconds =
             bench::least_seconds(budget_, [&] { samples = bench::integrate(*system_, method, grid(step)); });
-        add(bench::name_of(method), step_text(step), seconds, drift_of(samples));
+        add(bench::name_of(method), step_text(step), seconds, error_of(samples));
       }
     }
 #ifdef MULDI_CVODE
@@ -181,7 +221,7 @@ class EnergyComparison {
         bench::Samples samples;
         const double seconds = bench::least_seconds(
             budget_, [&] { samples = bench::integrate_with_cvode(*system_, method, tolerance, grid(20.0)); });
-        add(bench::name_of(method), tolerance_text(tolerance), seconds, drift_of(samples));
+        add(bench::name_of(method), tolerance_text(tolerance), seconds, error_of(samples));
       }
     }
 #endif
@@ -189,27 +229,46 @@ class EnergyComparison {
 
  private:
   static constexpr const char* name = "undamped lumped joint, energy";
+  static constexpr const char* drift_name = "undamped lumped joint, energy drift";
 
   bench::Grid grid(double step) const { return {.step = step, .sample = 20.0, .end = end_}; }
 
-  static double drift(const std::vector<double>& kinetic, const std::vector<double>& total) {
-    double largest = 0.0;
-    double departure = 0.0;
-    for (std::size_t i = 0; i < total.size(); ++i) {
-      largest = std::max(largest, kinetic[i]);
-      if (10 * i >= 9 * total.size()) departure = std::max(departure, std::abs(total[i]));
+  /// Relative to the largest kinetic energy.
+  struct EnergyError {
+    double departure = std::nan("");  ///< largest, in the last tenth
+    double drift = std::nan("");      ///< of the mean of the last tenth from that of the first
+  };
+
+  /// Mean with a Hann window, which a bounded oscillation does not move.
+  static double windowed_mean(std::span<const double> values) {
+    double sum = 0.0;
+    double weights = 0.0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double s = std::sin(std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(values.size()));
+      sum += s * s * values[i];
+      weights += s * s;
     }
-    return departure / largest;
+    return sum / weights;
   }
 
-  double drift_of(const bench::Samples& samples) const {
-    if (!samples.completed) return std::nan("");
+  static EnergyError error_of(const std::vector<double>& kinetic, const std::vector<double>& total) {
+    const std::size_t tenth = total.size() / 10;
+    const std::span<const double> all(total);
+    double departure = 0.0;
+    for (const double value : all.last(tenth)) departure = std::max(departure, std::abs(value));
+    const double largest = *std::max_element(kinetic.begin(), kinetic.end());
+    return {.departure = departure / largest,
+            .drift = std::abs(windowed_mean(all.last(tenth)) - windowed_mean(all.first(tenth))) / largest};
+  }
+
+  EnergyError error_of(const bench::Samples& samples) const {
+    if (!samples.completed) return {};
     std::vector<double> kinetic, total;
     for (std::size_t i = 0; i < samples.x.size(); ++i) {
       kinetic.push_back(system_->kinetic(samples.x[i], samples.v[i]));
       total.push_back(kinetic.back() + system_->potential(samples.x[i]));
     }
-    return drift(kinetic, total);
+    return error_of(kinetic, total);
   }
 
   void run_ours(double step) {
@@ -228,12 +287,16 @@ class EnergyComparison {
       kinetic.push_back(values.total.kinetic);
       total.push_back(values.total.kinetic + values.total.potential() - start);
     });
-    add(ours, step_text(step), seconds, drift(kinetic, total));
+    add(ours, step_text(step), seconds, error_of(kinetic, total));
   }
 
-  void add(const std::string& method, const std::string& setting, double seconds, double error) {
-    report_.add(bench::WorkPoint{
-        .scene = name, .sweep = "step", .method = method, .setting = setting, .seconds = seconds, .error = error});
+  void add(const std::string& method, const std::string& setting, double seconds, const EnergyError& error) {
+    for (const auto& [scene, value] : {std::pair(std::string(name), error.departure), {drift_name, error.drift}}) {
+      // It has lost all that it can lose within the first tenth.
+      if (scene == drift_name && method == bench::name_of(bench::Method::implicit_euler)) continue;
+      report_.add(bench::WorkPoint{
+          .scene = scene, .sweep = "step", .method = method, .setting = setting, .seconds = seconds, .error = value});
+    }
   }
 
   bench::WorkReport& report_;
@@ -258,6 +321,13 @@ void add_methods(bench::WorkReport& report) {
     report.add(bench::MethodOptions{bench::name_of(method), bench::cvode_version(), bench::options_of(method)});
   }
 #endif
+  if (!bench::has_peer("peer_simbody")) return;
+  const std::string simbody =
+      "tests/bench/peer_simbody.cpp: a general multibody library in joint coordinates, built from bodies, pin joints "
+      "and a "
+      "custom force for each muscle; variable step, setAccuracy, the rest by default; ";
+  report.add(bench::MethodOptions{"Simbody, Runge-Kutta-Merson", "3.7 (Debian)", simbody + "order 4, explicit"});
+  report.add(bench::MethodOptions{"Simbody, CPodes BDF", "3.7 (Debian)", simbody + "BDF to order 5, Newton"});
 }
 
 }  // namespace
@@ -270,14 +340,14 @@ int main(int argc, char** argv) {
   add_methods(report);
   Case joint{.name = "lumped joint",
              .file = "revolute_joint_lumped",
-             .system = bench::lumped_joint(10.0),
+             .system = bench::system_of(bench::joint_parts(10.0, bench::muscle_density)),
              .end = 1000.0,
              .sample = 20.0,
              .steps = {20, 10, 5, 2, 1, 0.5, 0.2, 0.1},
              .reference_step = 0.05};
   Case trunk{.name = "trunk",
              .file = "elephant_trunk_lumped",
-             .system = bench::lumped_trunk(),
+             .system = bench::system_of(bench::trunk_parts(bench::muscle_density)),
              .end = quick ? 500.0 : 2000.0,
              .sample = 20.0,
              .steps = {20, 10, 5, 2, 1, 0.5, 0.25},
@@ -295,6 +365,30 @@ int main(int argc, char** argv) {
     comparison.sweep_cvode();
     if (one == &trunk) comparison.sweep_solvers({5, 1});
     if (one != &membrane) comparison.sweep_tolerances(one == &joint ? 2.0 : 5.0);
+  }
+  const std::vector<std::string> massless{"materials.silicone.density=1e-12"};
+  Case joint_without{.name = "lumped joint, massless muscles",
+                     .file = joint.file,
+                     .system = bench::system_of(bench::joint_parts(10.0, 0.0)),
+                     .general_rival = "joint",
+                     .overrides = massless,
+                     .end = joint.end,
+                     .sample = joint.sample,
+                     .steps = joint.steps,
+                     .reference_step = joint.reference_step};
+  Case trunk_without{.name = "trunk, massless muscles",
+                     .file = trunk.file,
+                     .system = bench::system_of(bench::trunk_parts(0.0)),
+                     .general_rival = "trunk",
+                     .overrides = massless,
+                     .end = trunk.end,
+                     .sample = trunk.sample,
+                     .steps = trunk.steps,
+                     .reference_step = trunk.reference_step};
+  for (const Case* one : {&joint_without, &trunk_without}) {
+    Comparison comparison(report, *one, budget);
+    comparison.sweep_ours();
+    comparison.sweep_simbody();
   }
   EnergyComparison(report, quick ? 20e3 : 200e3, budget).run();
   report.print();

@@ -209,6 +209,6 @@ int main(int argc, char** argv) {
                    .overrides = {"optimal_control.stages=[{minimise: {effort: {scale: 1.0e-14}}}]"}};
   compare(report, joint, quick ? 2.0 : 5.0, quick ? 2 : 4);
   compare(report, fast, quick ? 2.0 : 5.0, quick ? 2 : 4);
-  if (!quick) compare(report, trunk, 12.0, 1);
+  if (!quick) compare(report, trunk, 8.0, 1);
   report.print();
 }

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "bench/work_precision/joint_chain.hpp"
-
 namespace muldi::bench {
 namespace {
 
@@ -13,7 +11,6 @@ using Eigen::Vector3d;
 
 constexpr double pi = std::numbers::pi;
 constexpr double eps0 = 8.8542e-12;  // mC/(V mm), the value of the thesis
-constexpr double rho = 1e-3;         // g/mm^3
 constexpr double mu = 0.7 / 3.0;     // MPa
 constexpr double field = 30e3;       // V/mm
 
@@ -22,6 +19,7 @@ struct RoundBar {
   double length = 0.0;
   double permittivity = 0.0;  // relative
   double viscosity = 0.0;
+  double density = muscle_density;
 };
 
 UniformMuscle round_muscle(const RoundBar& bar, bool is_charged) {
@@ -32,7 +30,7 @@ UniformMuscle round_muscle(const RoundBar& bar, bool is_charged) {
           .length = bar.length,
           .area = area,
           .shape = 3.0 / pi,
-          .mass = rho * area * bar.length,
+          .mass = bar.density * area * bar.length,
           .field = is_charged ? field : 0.0};
 }
 
@@ -57,19 +55,20 @@ class FreeMuscle final : public MinimalSystem {
 
 }  // namespace
 
-std::unique_ptr<MinimalSystem> lumped_joint(double viscosity) {
-  const RoundBar bar{.diameter = 11.0, .length = 100.0, .permittivity = 3.1, .viscosity = viscosity};
+ChainParts joint_parts(double viscosity, double density) {
+  const RoundBar bar{
+      .diameter = 11.0, .length = 100.0, .permittivity = 3.1, .viscosity = viscosity, .density = density};
   ChainLink pendulum{.centre = {46.0, 0.0, 0.0}, .mass = 40.0, .inertia = {1.0e5, 3.17e5, 3.17e5}};
   std::vector<ChainMuscle> muscles;
   for (const double side : {1.0, -1.0}) {
     muscles.push_back(
         {.from = {-10.0, 15.0 * side, 0.0}, .to = {90.0, 15.0 * side, 0.0}, .law = round_muscle(bar, side > 0.0)});
   }
-  return std::make_unique<JointChain>(std::vector<ChainLink>{pendulum}, std::move(muscles));
+  return {.links = {pendulum}, .muscles = std::move(muscles)};
 }
 
-std::unique_ptr<MinimalSystem> lumped_trunk() {
-  const RoundBar bar{.diameter = 8.0, .length = 50.0, .permittivity = 3.7, .viscosity = 100.0};
+ChainParts trunk_parts(double density) {
+  const RoundBar bar{.diameter = 8.0, .length = 50.0, .permittivity = 3.7, .viscosity = 100.0, .density = density};
   std::vector<ChainLink> links;
   std::vector<ChainMuscle> muscles;
   for (int i = 0; i < 6; ++i) {
@@ -87,7 +86,11 @@ std::unique_ptr<MinimalSystem> lumped_trunk() {
     }
     links.push_back(link);
   }
-  return std::make_unique<JointChain>(std::move(links), std::move(muscles));
+  return {.links = std::move(links), .muscles = std::move(muscles)};
+}
+
+std::unique_ptr<MinimalSystem> system_of(ChainParts parts) {
+  return std::make_unique<JointChain>(std::move(parts.links), std::move(parts.muscles));
 }
 
 std::unique_ptr<MinimalSystem> lumped_membrane() {
@@ -96,7 +99,7 @@ std::unique_ptr<MinimalSystem> lumped_membrane() {
                                                     .permittivity = 3.7 * eps0,
                                                     .length = 1.0,
                                                     .area = 400.0,
-                                                    .mass = rho * 400.0,
+                                                    .mass = muscle_density * 400.0,
                                                     .field = field});
 }
 
