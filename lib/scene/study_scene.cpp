@@ -188,6 +188,8 @@ SceneText scene_of_study(const Origin& study, const std::string& scene, const Se
 
 std::optional<double> number_at(const Node& resolved, const std::string& path) {
   const Node* node = node_at(resolved, path);
+  // Values by coordinate of a joint, of which there may be one.
+  if (node != nullptr && node->is_sequence() && node->items.size() == 1) node = &node->items.front();
   if (node == nullptr || !node->is_scalar() || node->quoted) return {};
   return base::parse_number(node->text);
 }

@@ -20,6 +20,12 @@ def scene_files():
 def pages():
     """Every page of the repository."""
     return [path for path in sorted(ROOT.rglob("*.md")) if not path.relative_to(ROOT).parts[0].startswith("build")]
+def study_files():
+    return sorted((SCENES / "studies").glob("*.yaml"))
+
+
+def is_study(path):
+    return any(word in yaml.safe_load(path.read_text()) for word in ("sweep", "calibrate"))
 
 
 class Schema(ProgramTest):
@@ -39,10 +45,32 @@ class Schema(ProgramTest):
             self.assertEqual(self.problems(path.read_text()), [], path.name)
 
     def test_every_scene_names_its_schema(self):
-        for path in scene_files():
+        for path in [*scene_files(), *study_files()]:
             named = MODELINE.match(path.read_text())
             self.assertTrue(named, path.name)
-            self.assertEqual((path.parent / named.group(1)).resolve(), ROOT / "schemas" / "scene.schema.json", path.name)
+            schema = "study.schema.json" if is_study(path) else "scene.schema.json"
+            self.assertEqual((path.parent / named.group(1)).resolve(), ROOT / "schemas" / schema, path.name)
+
+    def test_every_study_is_valid_and_mistakes_in_them_are_found(self):
+        text = self.program("schema", "--study").stdout
+        self.assertEqual(text, (ROOT / "schemas" / "study.schema.json").read_text())
+        jsonschema.Draft7Validator.check_schema(json.loads(text))
+        scenes, self.validator = self.validator, jsonschema.Draft7Validator(json.loads(text))
+        self.assertGreaterEqual(len(study_files()), 8)
+        for path in study_files():
+            if not is_study(path):
+                self.assertEqual(list(scenes.iter_errors(yaml.safe_load(path.read_text()))), [], path.name)
+                continue
+            self.assertEqual(self.problems(path.read_text()), [], path.name)
+        sweep = (SCENES / "studies" / "joint_sweep.yaml").read_text()
+        fit = (SCENES / "studies" / "joint_fit.yaml").read_text()
+        for text, right, wrong, problem in (
+            (sweep, "design: grid", "design: gird", "design: 'gird' is not valid under any of the given schemas"),
+            (sweep, "outputs:", "ouputs:", "'outputs' is a required property"),
+            (fit, "max: 5", "mx: 5", "'max' is a required property"),
+        ):
+            self.assertIn(right, text)
+            self.assertTrue(any(problem in found for found in self.problems(text.replace(right, wrong, 1))), problem)
 
     def test_every_snippet_of_the_pages_is_valid_and_runs_through_the_reader(self):
         found = [(page, text) for page in pages() for text in re.findall(r"```yaml\n(.*?)```", page.read_text(), re.DOTALL)]
