@@ -5,7 +5,7 @@
 
 #include "pipeline/outcome.hpp"
 #include "pipeline/study/parameters.hpp"
-#include "pipeline/study/reference_data.hpp"
+#include "pipeline/study/reference_curves.hpp"
 
 namespace muldi::pipeline {
 

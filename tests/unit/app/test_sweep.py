@@ -66,9 +66,16 @@ class Sweep(ProgramTest):
         self.program("sweep", study, "-o", "whole.h5")
         generator = random.Random(5)
         kills = 0
+        journal = self.folder / "broken.journal"
+
+        def lines():
+            return journal.read_bytes().count(b"\n") if journal.exists() else 0
+
         for _ in range(6):
+            goal = lines() + generator.randrange(5)
             process = self.start("sweep", study, "-o", "broken.h5", "--jobs", 2)
-            time.sleep(generator.uniform(0.02, 0.25))
+            self.wait_for(lambda: lines() >= goal, process, "points are finished")
+            time.sleep(generator.uniform(0.0, 0.01))
             process.kill()
             kills += process.wait() == -signal.SIGKILL
         self.assertGreaterEqual(kills, 2, "kills came in time")

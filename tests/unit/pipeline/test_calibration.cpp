@@ -112,9 +112,10 @@ TEST(Sensitivities, OfAStartAtRestInEquilibriumAreExact) {
 }
 
 TEST(Sensitivities, OfAClosedLoopAreExact) {
-  expect_exact("four_bar", {"dynamics.duration=30 ms"},
+  // Runs are converged to 1e-13 of position, of which differences of velocities over 1 ms keep 1e-8 at best.
+  expect_exact("four_bar", {"dynamics.duration=100 ms"},
                {"bodies.coupler.mass", "bodies.rocker.inertia[2]", "initial.joints.A.velocity"},
-               {"joints/A/coordinate", "joints/D/coordinate", "joints/C/velocity"}, 1e-8);
+               {"joints/A/coordinate", "joints/D/coordinate", "joints/C/velocity"}, 1e-7);
 }
 
 TEST(Sensitivities, AreRefusedWhereTermsHaveNone) {

@@ -1,4 +1,4 @@
-#include "pipeline/study/reference_data.hpp"
+#include "pipeline/study/reference_curves.hpp"
 
 #include <algorithm>
 #include <charconv>
