@@ -7,6 +7,8 @@
 #include "base/text.hpp"
 #include "results/info.hpp"
 #include "scene/read_scene.hpp"
+#include "scene/reference.hpp"
+#include "scene/study.hpp"
 
 namespace muldi::app {
 
@@ -21,8 +23,12 @@ int info(const std::string& file) {
   return ExitCode::success;
 }
 
-int schema() {
-  std::fputs(scene::schema_text().c_str(), stdout);
+int schema(bool of_studies, bool markdown) {
+  std::fputs((of_studies ? scene::study_schema_text()
+              : markdown ? scene::reference_text()
+                         : scene::schema_text())
+                 .c_str(),
+             stdout);
   return ExitCode::success;
 }
 

@@ -43,8 +43,8 @@ void check_results(const std::vector<std::string>& files) {
 }  // namespace
 
 const std::vector<std::string>& plot_kinds() {
-  static const std::vector<std::string> kinds{"energy", "joints",   "muscles", "controls", "points",
-                                              "probes", "momentum", "solver",  "optimum",  "convergence"};
+  static const std::vector<std::string> kinds{"energy",   "joints", "muscles", "controls",    "points", "probes",
+                                              "momentum", "solver", "optimum", "convergence", "view"};
   return kinds;
 }
 
@@ -67,6 +67,13 @@ int plot(const LookArguments& arguments) {
   const std::string output = output_of(arguments, ".svg");
   require_ending(output, {".svg", ".png", ".pdf"});
   check_results(arguments.files);
+  if (std::count(arguments.what.begin(), arguments.what.end(), "view") != 0) {
+    if (arguments.what.size() != 1 || arguments.files.size() != 1) {
+      throw base::InputError("--what: view is a picture of one file: ask for it alone");
+    }
+    become_python("still", {"-o", output, "--", arguments.files.front()},
+                  results::to_json(drawing_in(arguments.files.front())));
+  }
   std::vector<std::string> words{"-o", output};
   if (!arguments.what.empty()) words.insert(words.end(), {"--what", base::joined(arguments.what, ",")});
   words.emplace_back("--");

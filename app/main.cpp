@@ -5,6 +5,7 @@
 
 #include "app/exit_code.hpp"
 #include "app/look.hpp"
+#include "app/study.hpp"
 #include "app/verbs.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
@@ -21,9 +22,12 @@ struct CommandLine {
   std::string second;
   results::CompareOptions compare;
   app::LookArguments look;
+  app::StudyArguments study;
   bool quiet = false;
   bool no_progress = false;
   bool derivatives = false;
+  bool markdown = false;
+  bool study_schema = false;
   int verbose = 0;
 };
 
@@ -59,6 +63,7 @@ void add_optimise(CLI::App& program, CommandLine& line) {
   CLI::App* verb = program.add_subcommand("optimise", "find the controls that a scene asks for, and replay them");
   verb->alias("optimize");
   add_run_options(*verb, line);
+  verb->add_option("--resume", line.run.resume, "refused with the guess by which to go on instead")->type_name("FILE");
 }
 
 void add_check(CLI::App& program, CommandLine& line) {
@@ -88,7 +93,9 @@ void add_others(CLI::App& program, CommandLine& line) {
   CLI::App* info = program.add_subcommand("info", "status, sizes, final values and statistics of a result file");
   info->add_option("file", line.first, "result file")->required()->type_name("OUT.h5");
 
-  program.add_subcommand("schema", "the JSON Schema of the scene format");
+  CLI::App* schema = program.add_subcommand("schema", "the JSON Schema of the scene format");
+  schema->add_flag("--study", line.study_schema, "that of study files");
+  schema->add_flag("--markdown", line.markdown, "a page of every key instead, schemas/SCENE.md")->excludes("--study");
 }
 
 /// The verbs for people: pictures, pages, starter scenes, explanations.
@@ -119,6 +126,37 @@ void add_look(CLI::App& program, app::LookArguments& look) {
       ->type_name("KEY.PATH");
 }
 
+/// The verbs about many runs of a scene.
+void add_studies(CLI::App& program, CommandLine& line) {
+  app::StudyArguments& study = line.study;
+  const auto common = [&](CLI::App& verb) {
+    verb.add_option("study", study.study, "study file")->required()->type_name("STUDY.yaml");
+    verb.add_option("--set", study.overrides, "replace an entry of the scene: path.to[2].key=value (repeatable)")
+        ->type_name("PATH=VALUE")
+        ->allow_extra_args(false);
+    verb.add_flag("--force", study.force, "overwrite what is there");
+    verb.add_flag("--no-progress", line.no_progress, "no progress bar");
+  };
+  CLI::App* sweep = program.add_subcommand("sweep", "run a scene at many points, into one table");
+  common(*sweep);
+  sweep->add_option("-o,--output", study.output, "table; default <study stem>.h5 here, and .csv beside it")
+      ->type_name("TABLE.h5");
+  sweep->add_option("--jobs", study.jobs, "points at a time, each in a process; tasks of a Slurm array")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N");
+  sweep->add_option("--shard", study.shard, "only every n-th point, from the k-th one")->type_name("K/N");
+  sweep->add_flag("--merge", study.merge, "run nothing; make the table of what all shards have finished")
+      ->excludes(sweep->get_option("--shard"));
+  sweep->add_option("--slurm", study.slurm, "write the script of a Slurm array job with --jobs tasks, run nothing")
+      ->type_name("SCRIPT.sh");
+  CLI::App* fit = program.add_subcommand("calibrate", "fit parameters of a scene to a result or to measured data");
+  common(*fit);
+  fit->add_option("-o,--output", study.output, "calibrated scene; default <scene stem>_calibrated.yaml here")
+      ->type_name("SCENE.yaml");
+  fit->add_option("--results", study.results, "what was found, with residual curves; default <study stem>.h5 here")
+      ->type_name("FIT.h5");
+}
+
 int dispatch(const CLI::App& program, CommandLine& line) {
   if (program.got_subcommand("run")) {
     line.run.progress = !line.no_progress;
@@ -137,7 +175,10 @@ int dispatch(const CLI::App& program, CommandLine& line) {
   if (program.got_subcommand("paraview")) return app::paraview(line.look);
   if (program.got_subcommand("new")) return app::starter(line.look);
   if (program.got_subcommand("explain")) return app::explain(line.look);
-  return app::schema();
+  line.study.progress = !line.no_progress;
+  if (program.got_subcommand("sweep")) return app::sweep(line.study);
+  if (program.got_subcommand("calibrate")) return app::calibrate(line.study);
+  return app::schema(line.study_schema, line.markdown);
 }
 
 std::vector<std::string> names_of(const std::vector<const CLI::App*>& verbs) {
@@ -213,6 +254,8 @@ int main(int argc, char** argv) {
   add_check(program, line);
   add_others(program, line);
   add_look(program, line.look);
+  add_studies(program, line);
+  line.study.program = argv[0];
   try {
     program.parse(argc, argv);
     if (program.get_subcommands().empty()) throw CLI::RequiredError("a verb");

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <numbers>
 #include <optional>
 
@@ -101,6 +102,11 @@ std::string deviations_text(const pipeline::Deviations& deviations, const scene:
   return text;
 }
 
+/// The option by which the next optimisation starts from a result; paths in scenes are relative to the scene.
+std::string guess_from(const std::string& path) {
+  return base::format("--set 'optimal_control.guess={{from: {}}}'", std::filesystem::absolute(path).string());
+}
+
 void report(const pipeline::Optimised& result, const scene::Scene& scene, const std::string& path) {
   std::string text;
   if (!result.stages.empty() && result.stages.front().begin.n_starts > 1) {
@@ -109,20 +115,26 @@ void report(const pipeline::Optimised& result, const scene::Scene& scene, const 
   for (const pipeline::StageEnd& end : result.stages) text += stage_text(end, scene);
   if (result.replay) text += deviations_text(*result.replay, scene);
   std::fputs(text.c_str(), stdout);
-  const std::string status = variational::name_of(result.outcome.status);
   if (result.outcome.completed()) {
     base::log_info(base::format("completed: {}", path));
   } else if (result.outcome.status == variational::Status::interrupted) {
-    base::log_warning(
-        base::format("interrupted; the best iterate is in {}: go on with `guess: {{from: {}}}`", path, path));
+    base::log_warning(base::format("interrupted; the best iterate is in {}: go on with {}", path, guess_from(path)));
   } else {
-    base::log_error(base::format("{}: {} (the best iterate is in {})", status, result.outcome.sentence, path));
+    report_failure(result.outcome, pipeline::Task::optimal_control, scene,
+                   base::format("the best iterate is in {}", path));
   }
 }
 
 }  // namespace
 
 int optimise(const RunArguments& arguments) {
+  if (!arguments.resume.empty()) {
+    throw base::InputError(
+        base::format("'{}' cannot be resumed: the solver of an optimisation keeps no state from which it could go on "
+                     "as if unbroken; "
+                     "start from the last iterate instead, into another file: {}",
+                     arguments.resume, guess_from(arguments.resume)));
+  }
   pipeline::RunContext context;
   context.command_line = arguments.command_line;
   context.threads = arguments.threads;

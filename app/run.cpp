@@ -20,15 +20,20 @@
 namespace muldi::app {
 namespace {
 
-void report(const pipeline::Outcome& outcome, const std::string& path) {
-  const std::string status = variational::name_of(outcome.status);
+pipeline::Task task_of(const pipeline::Outcome& outcome, const scene::Scene& scene) {
+  if (std::isnan(outcome.time)) return pipeline::Task::statics;
+  const bool is_explicit = scene.dynamics && scene.dynamics->integrator == scene::Integrator::explicit_scheme;
+  return is_explicit ? pipeline::Task::explicit_dynamics : pipeline::Task::dynamics;
+}
+
+void report(const pipeline::Outcome& outcome, const scene::Scene& scene, const std::string& path) {
   const std::string at = std::isnan(outcome.time) ? "" : base::format(" at t = {:.6g}", outcome.time);
   if (outcome.completed()) {
     base::log_info(base::format("completed: {}", path));
   } else if (outcome.status == variational::Status::interrupted) {
     base::log_warning(base::format("interrupted{}; go on with --resume {}", at, path));
   } else {
-    base::log_error(base::format("{}{}: {} (what was computed is in {})", status, at, outcome.sentence, path));
+    report_failure(outcome, task_of(outcome, scene), scene, base::format("what was computed is in {}", path));
   }
 }
 
@@ -80,7 +85,7 @@ int run(const RunArguments& arguments) {
   if (arguments.paraview && outcome.status != variational::Status::write_error) {
     write_side_files(output.path, *scene);
   }
-  report(outcome, output.path);
+  report(outcome, *scene, output.path);
   report_phases(context.phases);
   return exit_code(outcome.status);
 }

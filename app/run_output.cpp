@@ -1,5 +1,6 @@
 #include "app/run_output.hpp"
 
+#include <cmath>
 #include <filesystem>
 
 #include "app/drawing.hpp"
@@ -31,6 +32,18 @@ void report_phases(const base::Phases& phases) {
   std::vector<std::string> parts;
   for (const base::Phase& phase : phases.all()) parts.push_back(base::format("{} {:.3g} s", phase.name, phase.seconds));
   base::log_verbose("wall time: " + base::joined(parts, ", "));
+}
+
+void report_failure(const pipeline::Outcome& outcome, pipeline::Task task, const scene::Scene& scene,
+                    const std::string& kept) {
+  const std::string at =
+      std::isnan(outcome.time) ? "" : base::format(" at t = {:.6g} {}", outcome.time, scene.units.time());
+  base::log_error(
+      base::format("{}{}: {} ({})", variational::name_of(outcome.status), at, base::trimmed(outcome.sentence), kept));
+  const pipeline::Advice advice = pipeline::advice_on(outcome.status, task);
+  if (advice.meaning.empty()) return;
+  base::log_plain(base::format("  why: {}", advice.meaning));
+  base::log_plain(base::format("  try: {}", advice.remedy));
 }
 
 void write_side_files(const std::string& path, const scene::Scene& scene) {

@@ -25,7 +25,7 @@ int check_derivatives(const std::string& scene, const std::vector<std::string>& 
 int validate(const std::vector<std::string>& scenes, const std::vector<std::string>& overrides);
 int compare(const std::string& first, const std::string& second, const results::CompareOptions& options);
 int info(const std::string& file);
-int schema();
+int schema(bool of_studies, bool markdown);
 
 /// `--version`: program, commit, compiler, libraries.
 std::string version_text();

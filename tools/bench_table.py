@@ -37,6 +37,8 @@ def main():
     build = pathlib.Path(sys.argv[1]).resolve()
     patterns = sys.argv[2:]
     programs = [path for path in sorted((build / "bench").glob("bench_*")) if path.is_file() and os.access(path, os.X_OK)]
+    # Those of `bench work-precision` have curves, not figures.
+    programs = [path for path in programs if not path.name.startswith("bench_work_")]
     chosen = [path for path in programs if not patterns or any(pattern in path.name for pattern in patterns)]
     if not chosen:
         print("no such benchmark; there are: " + ", ".join(path.name for path in programs), file=sys.stderr)

@@ -109,12 +109,6 @@ struct Choice {
   Need need = Need::required;
 };
 
-/// A key that the format knows but this version of the program does not read yet.
-struct Later {
-  std::string_view key;
-  std::string_view doc;
-};
-
 /// The word in the input for a value of an enum. An enum that is read has an overload, found by its arguments,
 /// `std::span<const Word<E>> words(E)` (any value) in the order of the documentation.
 template <class Enum>
@@ -122,7 +116,6 @@ struct Word {
   std::string_view word;
   Enum value;
   std::string_view doc;
-  bool later = false;  ///< known to the format, refused by this version of the program
 };
 
 /// A component family: its alternatives in the order of registration (registry.hpp of the folder).

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "base/text.hpp"
 
 namespace muldi::base {
@@ -54,6 +55,7 @@ constexpr Prefix prefixes[] = {{"a", 1e-18}, {"f", 1e-15}, {"p", 1e-12}, {"n", 1
 class Units {
  public:
   Units() {
+    log_debug("a text with a unit: making the unit system");
     ut_set_error_message_handler(ut_ignore);
     system_ = ut_new_system();
     MULDI_EXPECT(system_ != nullptr, "UDUNITS-2 makes a unit system");

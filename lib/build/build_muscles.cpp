@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "build/build_terms.hpp"
+#include "build/permittivity.hpp"
 #include "build/place_bodies.hpp"
 #include "muscles/element_observables.hpp"
 
@@ -22,21 +23,6 @@ double distance(const TermContext& context, const scene::Attachment& from, const
     return pose.point(to_eigen(end.at.position));
   };
   return (at(from) - at(to)).norm();
-}
-
-muscles::ElectricLaw electric_law(const scene::Material& material, double eps0) {
-  if (!material.electric) return {};
-  return std::visit(
-      [eps0](const auto& law) {
-        if constexpr (requires { law.relative_permittivity; }) {
-          return muscles::ElectricLaw::ideal(law.relative_permittivity, eps0);
-        } else if constexpr (requires { law.c3; }) {
-          return muscles::ElectricLaw::invariants(law.c1, law.c2, law.c3, eps0);
-        } else {
-          return muscles::ElectricLaw::vu(law.c1, law.c2, eps0);
-        }
-      },
-      material.electric->law);
 }
 
 double rest_length(const TermContext& context, const scene::Muscle& muscle) {

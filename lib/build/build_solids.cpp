@@ -233,6 +233,9 @@ void add_solids(TermContext& terms) {
       terms.built.notes.push_back(scene::warning_at(entry.origin, std::move(note)));
     }
     for (TiedNodes& group : tied) {
+      if (const std::string note = freedom_note(solid.data().X, group); !note.empty()) {
+        terms.built.notes.push_back(scene::warning_at(entry.origin, "solid '" + entry.name + "' " + note));
+      }
       terms.built.ties.push_back(std::make_unique<TiedNodes>(std::move(group)));
       add_tie_observables(entry.name, solid, *terms.built.ties.back(), *terms.built.model);
     }

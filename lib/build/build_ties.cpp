@@ -1,5 +1,6 @@
 #include "build/build_ties.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 
@@ -44,6 +45,25 @@ void TieBuilder::add(int node, int body) {
                         .xi = pose.orientation.transpose() * (x - pose.position)});
 }
 
+std::string freedom_note(const Eigen::VectorXd& X, const TiedNodes& group) {
+  if (group.body == multibody::ground) return {};
+  const auto n = static_cast<Eigen::Index>(group.nodes.size());
+  Eigen::Matrix3Xd at(3, n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    at.col(k) = X.segment<3>(3 * static_cast<Eigen::Index>(group.nodes[static_cast<std::size_t>(k)]));
+  }
+  const Eigen::Matrix3Xd apart = at.colwise() - at.rowwise().mean();
+  const Eigen::Vector3d squares =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(apart * apart.transpose(), Eigen::EigenvaluesOnly).eigenvalues();
+  // The extents of the nodes, ascending; squares are known to round-off of the largest.
+  constexpr double flat = 1e-12;
+  const std::string fixed = "is fixed to '" + group.name + "' ";
+  const std::string firmly = ": choose nodes that are not in one line if it is to hold firmly";
+  if (squares[2] <= flat * at.squaredNorm()) return fixed + "at one point, which is a ball joint" + firmly;
+  if (squares[1] <= flat * squares[2]) return fixed + "along one line, which is a hinge" + firmly;
+  return {};
+}
+
 TieWrench wrench_on(const fem::Solid& solid, const TiedNodes& group, const model::NodeView& at) {
   // What a tie does to its node, it takes from the body.
   const auto on_nodes = solid.positions(at.constraint_force);
@@ -64,11 +84,11 @@ TieWrench wrench_on(const fem::Solid& solid, const TiedNodes& group, const model
 void add_tie_observables(const std::string& owner, const fem::Solid& solid, const TiedNodes& group,
                          model::Model& model) {
   const std::string folder = "ties/" + owner + "." + group.name + "/";
-  const auto add = [&](const char* what, base::Dimension unit, std::string doc, auto part) {
+  const auto add = [&](const char* what, base::Dimension unit, const std::string& doc, auto part) {
     model.observables.push_back({.path = folder + what,
                                  .shape = {3},
                                  .unit = unit,
-                                 .doc = std::move(doc),
+                                 .doc = doc,
                                  .evaluate = [&solid, &group, part](const model::NodeView& at, std::span<double> out) {
                                    const Eigen::Vector3d value = wrench_on(solid, group, at).*part;
                                    std::copy(value.data(), value.data() + 3, out.begin());

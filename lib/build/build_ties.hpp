@@ -35,6 +35,10 @@ class TieBuilder {
   std::vector<TiedNodes> groups_;
 };
 
+/// What the user should know of nodes that leave a body free to turn: one node is a ball joint, nodes in a line are a
+/// hinge; empty for others and for ground. `X`: reference positions of the solid (3 n_nodes).
+std::string freedom_note(const Eigen::VectorXd& X, const TiedNodes& group);
+
 /// Force with which a solid acts on what its tied nodes are fixed to, and moment about the body's centre of mass (the
 /// origin for ground), world axes.
 struct TieWrench {

@@ -82,8 +82,9 @@ struct PathLimits {
   std::vector<PointLimit> points = {};
   std::optional<double> true_field = {};      ///< largest E/Lambda
   std::optional<double> pull_in_margin = {};  ///< smallest Pi''(Lambda, E)/Pi''(1, 0)
-  /// Largest change of an angle from node to node (rad). Midpoint momenta of a body that turns by a are J sin(a)/dt:
-  /// half turns cost nothing, and an optimum may hold them where this is infinite.
+  /// Largest change of an angle, and largest turn of a body behind a ball, from node to node (rad). Midpoint momenta of
+  /// a body that turns by a are J sin(a)/dt: half turns cost nothing, and an optimum may hold them where this is
+  /// infinite.
   double longest_turn = infinity;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "control/end_pieces.hpp"
 #include "control/interval_blocks.hpp"
 
 namespace muldi::control {
@@ -124,6 +125,7 @@ DiscreteDynamics::DiscreteDynamics(const Problem& problem, const Layout& layout,
     interval.u.assign(model_.controls.size(), 0.0);
     interval.forces.force = interval.forces.momentum = Eigen::VectorXd::Zero(model_.n_q());
     interval.forces.on_rates = Eigen::VectorXd::Zero(layout.n_v);
+    if (model_.acts_at_ends()) interval.forces.begin = interval.forces.end = interval.q;
   }
   manifold.configuration(guess.x[0], q);
   model_.evaluate_controls(0.0, intervals_[0].u);
@@ -190,6 +192,10 @@ bool DiscreteDynamics::move_to(const Eigen::VectorXd& unknowns) {
     model_.forces(point_of(k), at.forces);
     node(k).bracket += 0.5 * h_ * at.forces.force - at.forces.momentum;
     node(k + 1).bracket += 0.5 * h_ * at.forces.force + at.forces.momentum;
+    if (at.forces.begin.size() > 0) {
+      node(k).bracket += at.forces.begin;
+      node(k + 1).bracket += at.forces.end;
+    }
     if (!at.forces.force.allFinite()) return false;
   }
   return true;
@@ -212,6 +218,12 @@ void DiscreteDynamics::update_pieces(DynamicsNode& at, bool along) const {
   if (along) pieces_.multiply_mass_of_chart(at.point.A, at.MA);
   for (std::size_t p = 0; p < pieces_.pieces.size(); ++p) {
     const Piece& piece = pieces_.pieces[p];
+    if (piece.coordinate != nullptr) {
+      const EndPiece at_node(piece, at.point, along);
+      at.J[p] = at_node.J();
+      if (along) at.A[p] = at_node.A();
+      continue;
+    }
     if (!has_pieces_) piece.project(at.point.D, at.J[p]);
     if (!along) continue;
     if (piece.rate >= 0) {

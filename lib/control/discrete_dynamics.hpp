@@ -6,6 +6,7 @@
 ///
 ///     r_n = D_n^T [ (h/2 F + pi)_{n-1/2} + (h/2 F - pi)_{n+1/2} - G(q_n)^T Z_n mu_n ] + h/2 (Q_{n-1/2} + Q_{n+1/2}):
 ///
+/// (with forces on loop-closing joints h/2 Q g(q_n), g the gradient of the joint's coordinate, in the bracket too)
 /// the derivative of the discrete action by theta_n. At the ends the half that does not exist is left out; the end
 /// momenta are added by the transcription. Closed loops add the rows Z_n^T g(q_n).
 ///

@@ -20,7 +20,7 @@ class MomentumSink final : public model::ExpansionSink {
 
   void add(const model::LocalForms&, const model::LocalExpansion& expansion) override {
     const Piece& piece = list_.pieces[at_++];
-    if (piece.rate >= 0) return;
+    if (!piece.is_linear()) return;
     const Eigen::Index m = piece.size;
     Eigen::MatrixXd J;
     Eigen::MatrixXd V;
@@ -48,7 +48,7 @@ class MomentumHessianSink final : public model::ExpansionSink {
 
   void add(const model::LocalForms&, const model::LocalExpansion& expansion) override {
     const Piece& piece = list_.pieces[at_++];
-    if (piece.rate >= 0) return;
+    if (!piece.is_linear()) return;
     const Eigen::Index m = piece.size;
     Eigen::MatrixXd J;
     Eigen::MatrixXd V;

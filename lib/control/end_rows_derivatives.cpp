@@ -1,4 +1,5 @@
 /// Forces and derivatives of the conditions at an end.
+#include "control/end_pieces.hpp"
 #include "control/end_rows.hpp"
 
 namespace muldi::control {
@@ -14,6 +15,10 @@ class StaticSink final : public model::ExpansionSink {
 
   void add(const model::LocalForms&, const model::LocalExpansion& expansion) override {
     const Piece& piece = list_.pieces[at_++];
+    if (piece.coordinate != nullptr) {
+      add_end_piece(piece, expansion);
+      return;
+    }
     const Eigen::Index m = piece.size;
     Eigen::MatrixXd J;
     piece.project(point_.D, J);
@@ -36,6 +41,20 @@ class StaticSink final : public model::ExpansionSink {
   Eigen::VectorXd y;
 
  private:
+  void add_end_piece(const Piece& piece, const model::LocalExpansion& expansion) {
+    const EndPiece at(piece, point_, second_);
+    const double slope = expansion.tangent(0, 0);
+    const Eigen::MatrixXd J = at.J();
+    if (!second_) {
+      scatter(slope * J.transpose() * J, piece, out);
+      at.add_curvature(expansion.force, out);
+      return;
+    }
+    const Eigen::MatrixXd mixed = slope * at.A().transpose() * J;
+    scatter(mixed + mixed.transpose(), piece, out);
+    at.add_curvature_along(slope * at.along(), expansion.force, y, out);
+  }
+
   static void scatter(const Eigen::MatrixXd& block, const Piece& piece, Eigen::MatrixXd& to) {
     for (std::size_t c = 0; c < piece.columns.size(); ++c) {
       for (std::size_t r = 0; r < piece.columns.size(); ++r) {

@@ -1,5 +1,7 @@
 #include "control/interval_blocks.hpp"
 
+#include "control/end_pieces.hpp"
+
 namespace muldi::control {
 namespace {
 
@@ -66,10 +68,25 @@ Vector<m> local_rate(const IntervalFrame& frame, const Piece& piece) {
   Vector<m> v = Vector<m>::Zero(piece.size);
   if (piece.rate >= 0) {
     v[0] = (frame.end.theta[piece.rate] - frame.begin.theta[piece.rate]) / frame.h;
+  } else if (piece.coordinate != nullptr) {
+    v[0] = piece.coordinate->advance(frame.begin.point.q, frame.end.point.q) / frame.h;
   } else {
     piece.apply(frame.v, v);
   }
   return v;
+}
+
+/// Calls add.operator()<m, most>() with the sizes of a piece.
+template <class Add>
+void with_sizes(const Piece& piece, const Add& add) {
+  const bool is_small = piece.columns.size() <= few;
+  if (piece.size == 3 && is_small) {
+    add.template operator()<3, few>();
+  } else if (piece.size == 1 && is_small) {
+    add.template operator()<1, few>();
+  } else {
+    add.template operator()<Eigen::Dynamic, Eigen::Dynamic>();
+  }
 }
 
 }  // namespace
@@ -99,6 +116,7 @@ void JacobianSink::add_piece(const Piece& piece, const model::LocalExpansion& ex
                      i == 0 ? out_.by_w_after[k] : out_.by_w_before[k + 1]);
     }
   }
+  if (piece.coordinate != nullptr) add_end_piece(piece, expansion);
   if (frame_.layout.step < 0) return;
   const Vector<m> v = local_rate<m>(frame_, piece);
   const Vector<m> F_v = expansion.tangent.block(0, size, size, size) * v;
@@ -109,16 +127,19 @@ void JacobianSink::add_piece(const Piece& piece, const model::LocalExpansion& ex
   }
 }
 
+void JacobianSink::add_end_piece(const Piece& piece, const model::LocalExpansion& expansion) {
+  const auto k = static_cast<std::size_t>(frame_.k);
+  const std::array<const DynamicsNode*, 2> nodes{&frame_.begin, &frame_.end};
+  for (std::size_t i = 0; i < 2; ++i) {
+    EndPiece(piece, nodes[i]->point, false).add_curvature(0.5 * frame_.h * expansion.force, out_.diagonal[k + i]);
+    if (frame_.layout.step < 0) continue;
+    scatter_vector(0.5 * expansion.force * nodes[i]->J[at_].row(0), piece.columns, out_.by_step[k + i]);
+  }
+}
+
 void JacobianSink::add(const model::LocalForms&, const model::LocalExpansion& expansion) {
   const Piece& piece = frame_.list.pieces[at_];
-  const bool is_small = piece.columns.size() <= few;
-  if (piece.size == 3 && is_small) {
-    add_piece<3, few>(piece, expansion);
-  } else if (piece.size == 1 && is_small) {
-    add_piece<1, few>(piece, expansion);
-  } else {
-    add_piece<Eigen::Dynamic, Eigen::Dynamic>(piece, expansion);
-  }
+  with_sizes(piece, [&]<int m, int most>() { add_piece<m, most>(piece, expansion); });
   ++at_;
 }
 
@@ -141,6 +162,11 @@ HessianSink::Local<m, most> HessianSink::local(const Piece& piece) const {
   if (piece.rate >= 0) {
     at.a[0] = 0.5 * (adjoint_.m_begin[piece.rate] + adjoint_.m_end[piece.rate]);
     at.b[0] = (adjoint_.m_end[piece.rate] - adjoint_.m_begin[piece.rate]) / frame_.h;
+  } else if (piece.coordinate != nullptr) {
+    const double begin = EndPiece(piece, frame_.begin.point, true).along();
+    const double end = EndPiece(piece, frame_.end.point, true).along();
+    at.a[0] = 0.5 * (begin + end);
+    at.b[0] = (end - begin) / frame_.h;
   } else {
     piece.apply(adjoint_.a, at.a);
     piece.apply(adjoint_.b, at.b);
@@ -156,7 +182,8 @@ void HessianSink::add_piece(const Piece& piece, const model::LocalExpansion& exp
   const Eigen::MatrixXd& T = expansion.tangent;
   const Eigen::MatrixXd& H = *expansion.hessian;
   const Local<m, most> at = local<m, most>(piece);
-  if (piece.rate < 0) {
+  if (piece.coordinate != nullptr) add_end_piece(piece, expansion, at.a[0]);
+  if (piece.is_linear()) {
     // Gradients of Psi by xi and xi', and of Phi by xi_0, xi_1.
     const Vector<m> by_x =
         T.topLeftCorner(size, size).transpose() * at.a + T.block(size, 0, size, size).transpose() * at.b;
@@ -238,16 +265,23 @@ void HessianSink::add_step(const Piece& piece, const model::LocalExpansion& expa
   out_.step_step += (at.v.dot(vv) + 2.0 * p_v_b.dot(at.v)) / h;
 }
 
+void HessianSink::add_end_piece(const Piece& piece, const model::LocalExpansion& expansion, double along) {
+  const auto k = static_cast<std::size_t>(frame_.k);
+  const double by_value = expansion.tangent(0, 0) * along;
+  const double by_rate = expansion.tangent(0, 1) * along;
+  const std::array<const DynamicsNode*, 2> nodes{&frame_.begin, &frame_.end};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const EndPiece at_node(piece, nodes[i]->point, true);
+    at_node.add_curvature_along(0.5 * frame_.h * by_value + sign[i] * by_rate, 0.5 * frame_.h * expansion.force,
+                                out_.y[k + i], out_.diagonal[k + i]);
+    if (frame_.layout.step < 0) continue;
+    scatter_vector(0.5 * expansion.force * nodes[i]->A[at_].row(0), piece.columns, out_.step_theta[k + i]);
+  }
+}
+
 void HessianSink::add(const model::LocalForms&, const model::LocalExpansion& expansion) {
   const Piece& piece = frame_.list.pieces[at_];
-  const bool is_small = piece.columns.size() <= few;
-  if (piece.size == 3 && is_small) {
-    add_piece<3, few>(piece, expansion);
-  } else if (piece.size == 1 && is_small) {
-    add_piece<1, few>(piece, expansion);
-  } else {
-    add_piece<Eigen::Dynamic, Eigen::Dynamic>(piece, expansion);
-  }
+  with_sizes(piece, [&]<int m, int most>() { add_piece<m, most>(piece, expansion); });
   ++at_;
 }
 

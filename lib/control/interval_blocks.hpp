@@ -29,6 +29,8 @@ class JacobianSink final : public model::ExpansionSink {
  private:
   template <int m, int most>
   void add_piece(const Piece& piece, const model::LocalExpansion& expansion);
+  /// What is curved in a coordinate of a loop-closing joint, beside its slopes in add_piece.
+  void add_end_piece(const Piece& piece, const model::LocalExpansion& expansion);
 
   const IntervalFrame& frame_;
   DynamicsJacobian& out_;
@@ -62,6 +64,8 @@ class HessianSink final : public model::ExpansionSink {
   void add_controls(const Piece& piece, const model::LocalExpansion& expansion, const Local<m, most>& at);
   template <int m, int most>
   void add_step(const Piece& piece, const model::LocalExpansion& expansion, const Local<m, most>& at);
+  /// As that of the Jacobian; `along`: the mean of the coordinate's slopes along the adjoints.
+  void add_end_piece(const Piece& piece, const model::LocalExpansion& expansion, double along);
 
   const IntervalFrame& frame_;
   const AdjointFrame& adjoint_;

@@ -19,8 +19,10 @@ class Lister final : public model::ExpansionSink {
     Piece piece{.points = {forms.points.begin(), forms.points.end()},
                 .entries = {forms.entries.begin(), forms.entries.end()},
                 .rate = forms.rate,
+                .coordinate = forms.coordinate,
                 .size = forms.size(),
                 .controls = {expansion.controls.begin(), expansion.controls.end()}};
+    if (piece.coordinate != nullptr) piece.entries = piece.coordinate->unknowns();
     std::set<int> columns;
     if (piece.rate >= 0) columns.insert(piece.rate);
     for (const int dof : piece.entries) {

@@ -13,15 +13,18 @@ struct Piece {
   std::vector<model::LinearPoint> points = {};
   std::vector<int> entries = {};
   int rate = -1;
-  int size = 0;                    ///< number m of linear forms
-  std::vector<int> columns = {};   ///< coordinates theta that they depend on
-  std::vector<int> controls = {};  ///< of the model
+  const model::EndCoordinate* coordinate = nullptr;  ///< see end_pieces.hpp; its unknowns are `entries`
+  int size = 0;                                      ///< number m of forms
+  std::vector<int> columns = {};                     ///< coordinates theta that they depend on
+  std::vector<int> controls = {};                    ///< of the model
 
-  /// The forms of a configuration, a velocity or a direction (without the constants of points).
+  /// True if the forms are linear in q.
+  bool is_linear() const { return rate < 0 && coordinate == nullptr; }
+  /// Of linear pieces: the forms of a configuration, a velocity or a direction (without the constants of points).
   void apply(const Eigen::VectorXd& q, Eigen::Ref<Eigen::VectorXd> out) const;
-  /// f += forms^T local.
+  /// f += forms^T local, of linear pieces.
   void add_transposed(const Eigen::Ref<const Eigen::VectorXd>& local, Eigen::VectorXd& f) const;
-  /// forms D on the piece's columns (m, columns).
+  /// forms D on the piece's columns (m, columns), of linear pieces and rates.
   void project(const Eigen::MatrixXd& D, Eigen::MatrixXd& out) const;
 };
 

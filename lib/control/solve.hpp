@@ -40,7 +40,8 @@ struct SolveOptions {
   double tolerance = 1e-8;
   std::function<void(const Iterate&)> progress = {};
   std::function<bool()> interrupted = {};
-  bool check_derivatives = false;  ///< by the solver's own differences at the start; counts go to SolveResult
+  bool check_derivatives = false;    ///< by the solver's own differences at the start; counts go to SolveResult
+  bool approximate_hessian = false;  ///< updated from gradients (limited memory) in place of the exact one; benchmarks
 };
 
 /// A bound or limit that holds with equality at the solution.

@@ -30,15 +30,14 @@ Transcription::Transcription(const Problem& problem, std::span<const WeightedObj
   find_sizes(guess);
   dynamics_ = std::make_unique<DiscreteDynamics>(problem, layout_, guess);
   for (const std::string& term : dynamics_->pieces().refused) {
-    faults_.push_back({"", "forces on " + term +
-                               " have no second derivatives for optimal control; where the joint closes "
-                               "a loop, list the joints of the loop in another order, so that another one closes it"});
+    faults_.push_back({"", "forces on " + term + " have no second derivatives for optimal control"});
   }
   if (!faults_.empty()) return;
   make_ends(guess);
   place_unknowns();
   limits_ = std::make_unique<LimitRows>(problem, layout_, *dynamics_->node(0).chart, sizes_.length);
-  if (std::isfinite(problem.limits.longest_turn)) find_angles(guess);
+  turns_ =
+      std::make_unique<TurnRows>(problem.model, *dynamics_->node(0).chart, guess.x[0], problem.limits.longest_turn);
   count_rows();
   set_bounds(guess);
   set_scales();
@@ -58,20 +57,6 @@ Transcription::Transcription(const Problem& problem, std::span<const WeightedObj
   write_jacobian();
   write_hessian();
   scale_objective(guess);
-}
-
-void Transcription::find_angles(const Trajectory& guess) {
-  constexpr double turn = 1e-3;
-  const model::Manifold& manifold = *problem_.model.manifold;
-  Eigen::VectorXd q0 = Eigen::VectorXd::Zero(problem_.model.n_q());
-  manifold.configuration(guess.x[0], q0);
-  Eigen::VectorXd q1 = q0;
-  Eigen::VectorXd x = guess.x[0];
-  for (int k = 0; k < layout_.n_v; ++k) {
-    manifold.retract(guess.x[0], turn * Eigen::VectorXd::Unit(layout_.n_v, k), x);
-    manifold.configuration(x, q1);
-    if (manifold.largest_rotation(q0, q1) > 0.5 * turn) angles_.push_back(k);
-  }
 }
 
 void Transcription::find_sizes(const Trajectory& guess) {
@@ -146,7 +131,7 @@ void Transcription::count_rows() {
     if (motions_[end]) motion_row_[end] = take(motions_[end]->n_rows());
   }
   limit_row_ = take(static_cast<int>(limits_->rows().size()));
-  turn_row_ = take(static_cast<int>(angles_.size()) * layout_.n_steps);
+  turn_row_ = take(turns_->n_rows() * layout_.n_steps);
   int peaks = 0;
   for (const double factor : objectives_.peak_factors()) peaks += factor != 0.0 ? layout_.n_steps : 0;
   peak_row_ = take(objectives_.has_peak() ? peaks : 0);
@@ -206,9 +191,11 @@ void Transcription::set_bounds(const Trajectory&) {
     bounds_.c_lower[limit_row_ + static_cast<Eigen::Index>(i)] = limits_->rows()[i].lower;
     bounds_.c_upper[limit_row_ + static_cast<Eigen::Index>(i)] = limits_->rows()[i].upper;
   }
-  const Eigen::Index n_turns = peak_row_ - turn_row_;
-  bounds_.c_lower.segment(turn_row_, n_turns).setConstant(-problem_.limits.longest_turn);
-  bounds_.c_upper.segment(turn_row_, n_turns).setConstant(problem_.limits.longest_turn);
+  for (int row = 0; row < turns_->n_rows(); ++row) {
+    const int first = turn_row_ + row * layout_.n_steps;
+    bounds_.c_lower.segment(first, layout_.n_steps).setConstant(turns_->lower(row));
+    bounds_.c_upper.segment(first, layout_.n_steps).setConstant(turns_->upper(row));
+  }
   if (objectives_.has_peak()) bounds_.c_upper.tail(n_rows_ - peak_row_).setConstant(infinity);
 }
 
@@ -294,6 +281,7 @@ void Transcription::find_patterns() {
   const model::Chart& chart = *dynamics_->node(0).chart;
   for (const auto& clique : objectives_.cliques(chart)) add(clique);
   for (std::size_t i = 0; i < limits_->rows().size(); ++i) add(limits_->columns(i));
+  for (int row = 0; row < turns_->n_rows(); ++row) add(turns_->columns(row));
   std::vector<int> all;
   for (int k = 0; k < layout_.n_v; ++k) {
     pairs.insert({k, k});

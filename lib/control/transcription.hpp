@@ -12,6 +12,7 @@
 #include "control/objective_sum.hpp"
 #include "control/solve.hpp"
 #include "control/sparse_entries.hpp"
+#include "control/turn_rows.hpp"
 
 namespace muldi::control {
 
@@ -55,7 +56,6 @@ class Transcription final : public Nlp {
   double impulse_weight(int node, double step) const;
   void count_rows();
   void find_sizes(const Trajectory& guess);
-  void find_angles(const Trajectory& guess);
   void make_ends(const Trajectory& guess);
   void place_unknowns();
   void set_bounds(const Trajectory& guess);
@@ -70,6 +70,7 @@ class Transcription final : public Nlp {
   void write_node_rows(int n);
   void write_end_rows(int end);
   void write_limit_rows();
+  void write_turn_rows();
   void write_hessian();
   void write_extra_hessian();
   void write_hessian_blocks();
@@ -83,6 +84,7 @@ class Transcription final : public Nlp {
   std::array<std::unique_ptr<EndMotionRows>, 2> motions_;
   std::array<Eigen::VectorXd, 2> end_momenta_;  ///< constants (n_v), where the motion has no unknowns
   std::unique_ptr<LimitRows> limits_;
+  std::unique_ptr<TurnRows> turns_;
   std::vector<Fault> faults_;
 
   int n_rows_ = 0;
@@ -113,7 +115,6 @@ class Transcription final : public Nlp {
   std::set<std::pair<int, int>> plain_pairs_;  // choices of which one piece has both
   const Eigen::VectorXd* motion_weights_ = nullptr;
   double change_factor_ = 0.0;
-  std::vector<int> angles_;             // coordinates whose change from node to node is limited
   Eigen::MatrixXd equilibrium_lambda_;  // (n_c, n_v) Hessian by the multipliers of the equilibrium
 };
 

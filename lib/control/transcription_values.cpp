@@ -74,10 +74,8 @@ void Transcription::constraints(Eigen::VectorXd& out) {
     out[limit_row_ + static_cast<Eigen::Index>(i)] = limits_->value(limit, *dynamics_, w);
   }
   int turn = turn_row_;
-  for (const int k : angles_) {
-    for (int n = 0; n < layout_.n_steps; ++n) {
-      out[turn++] = unknowns_[layout_.theta(n + 1, k)] - unknowns_[layout_.theta(n, k)];
-    }
+  for (int which = 0; which < turns_->n_rows(); ++which) {
+    for (int k = 0; k < layout_.n_steps; ++k) out[turn++] = turns_->value(which, k, *dynamics_);
   }
   int peak = peak_row_;
   for (int c = 0; c < layout_.n_u && objectives_.has_peak(); ++c) {
@@ -167,13 +165,6 @@ void Transcription::write_limit_rows() {
     for (const int c : limits_->columns(i)) out.add(row, layout_.theta(limit.node, c), d.by_theta[c]);
     if (limit.choice >= 0) out.add(row, layout_.w(limit.interval, limit.choice), d.by_w);
   }
-  int turn = turn_row_;
-  for (const int k : angles_) {
-    for (int n = 0; n < layout_.n_steps; ++n, ++turn) {
-      out.add(turn, layout_.theta(n + 1, k), 1.0);
-      out.add(turn, layout_.theta(n, k), -1.0);
-    }
-  }
   int peak = peak_row_;
   for (int c = 0; c < layout_.n_u && objectives_.has_peak(); ++c) {
     const auto at = static_cast<std::size_t>(c);
@@ -188,11 +179,31 @@ void Transcription::write_limit_rows() {
   }
 }
 
+void Transcription::write_turn_rows() {
+  SparseEntries& out = jacobian_entries_;
+  Eigen::VectorXd by_begin;
+  Eigen::VectorXd by_end;
+  int turn = turn_row_;
+  for (int row = 0; row < turns_->n_rows(); ++row) {
+    const std::vector<int>& columns = turns_->columns(row);
+    by_begin.setZero(static_cast<Eigen::Index>(columns.size()));
+    by_end = by_begin;
+    for (int k = 0; k < layout_.n_steps; ++k, ++turn) {
+      if (out.writing()) turns_->derivatives(row, k, *dynamics_, by_begin, by_end);
+      for (std::size_t i = 0; i < columns.size(); ++i) {
+        out.add(turn, layout_.theta(k, columns[i]), by_begin[static_cast<Eigen::Index>(i)]);
+        out.add(turn, layout_.theta(k + 1, columns[i]), by_end[static_cast<Eigen::Index>(i)]);
+      }
+    }
+  }
+}
+
 void Transcription::write_jacobian() {
   write_end_rows(0);
   for (int n = 0; n <= layout_.n_steps; ++n) write_node_rows(n);
   write_end_rows(1);
   write_limit_rows();
+  write_turn_rows();
 }
 
 void Transcription::hessian(double factor, const Eigen::VectorXd& mu, double* values) {
@@ -210,6 +221,12 @@ void Transcription::hessian(double factor, const Eigen::VectorXd& mu, double* va
     const LimitRow& limit = limits_->rows()[i];
     const double w = limit.choice >= 0 ? unknowns_[layout_.w(limit.interval, limit.choice)] : 0.0;
     limits_->add_hessian(limit, weights[limit_row_ + static_cast<Eigen::Index>(i)], *dynamics_, w, hessian_);
+  }
+  int turn = turn_row_;
+  for (int row = 0; row < turns_->n_rows(); ++row) {
+    for (int k = 0; k < layout_.n_steps; ++k) {
+      turns_->add_hessian(row, k, weights[turn++], *dynamics_, hessian_);
+    }
   }
   int peak = peak_row_;
   for (int c = 0; c < layout_.n_u && objectives_.has_peak(); ++c) {

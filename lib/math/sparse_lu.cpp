@@ -9,9 +9,37 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "math/sparse_library.hpp"
 
 namespace muldi::math {
 namespace {
+
+/// The functions of UMFPACK that are used.
+struct Umfpack {
+  decltype(&umfpack_di_defaults) defaults = nullptr;
+  decltype(&umfpack_di_symbolic) symbolic = nullptr;
+  decltype(&umfpack_di_numeric) numeric = nullptr;
+  decltype(&umfpack_di_solve) solve = nullptr;
+  decltype(&umfpack_di_get_determinant) determinant = nullptr;
+  decltype(&umfpack_di_free_symbolic) free_symbolic = nullptr;
+  decltype(&umfpack_di_free_numeric) free_numeric = nullptr;
+
+  Umfpack() {
+    const SparseLibrary library("libumfpack.so.5");
+    library.find("umfpack_di_defaults", defaults);
+    library.find("umfpack_di_symbolic", symbolic);
+    library.find("umfpack_di_numeric", numeric);
+    library.find("umfpack_di_solve", solve);
+    library.find("umfpack_di_get_determinant", determinant);
+    library.find("umfpack_di_free_symbolic", free_symbolic);
+    library.find("umfpack_di_free_numeric", free_numeric);
+  }
+};
+
+const Umfpack& umfpack() {
+  static const Umfpack functions;
+  return functions;
+}
 
 /// Calls visit(row, column, value) for every entry of both triangles.
 template <class Visit>
@@ -68,10 +96,10 @@ struct SparseLu::Factor {
   std::array<double, UMFPACK_CONTROL> control{};
   std::array<double, UMFPACK_INFO> info{};
 
-  Factor() { umfpack_di_defaults(control.data()); }
+  Factor() { umfpack().defaults(control.data()); }
   ~Factor() {
-    umfpack_di_free_numeric(&numeric);
-    umfpack_di_free_symbolic(&symbolic);
+    umfpack().free_numeric(&numeric);
+    umfpack().free_symbolic(&symbolic);
   }
   Factor(const Factor&) = delete;
   Factor& operator=(const Factor&) = delete;
@@ -91,7 +119,8 @@ SparseLu& SparseLu::operator=(SparseLu&&) noexcept = default;
 LuOutcome SparseLu::factorise(const Eigen::SparseMatrix<double>& matrix) {
   MULDI_EXPECT(matrix.rows() == matrix.cols() && matrix.isCompressed(), "a square compressed matrix");
   Factor& f = *factor_;
-  umfpack_di_free_numeric(&f.numeric);
+  umfpack().free_numeric(&f.numeric);
+  SparseLibrary::keep_to_one_thread();
   const bool known = f.has_pattern_of(matrix);
   f.matrix = matrix;
   const int n = static_cast<int>(matrix.cols());
@@ -100,18 +129,25 @@ LuOutcome SparseLu::factorise(const Eigen::SparseMatrix<double>& matrix) {
   const double* values = f.matrix.valuePtr();
   int status = UMFPACK_OK;
   if (!known) {
-    umfpack_di_free_symbolic(&f.symbolic);
-    status = umfpack_di_symbolic(n, n, start, rows, values, &f.symbolic, f.control.data(), f.info.data());
+    umfpack().free_symbolic(&f.symbolic);
+    status = umfpack().symbolic(n, n, start, rows, values, &f.symbolic, f.control.data(), f.info.data());
   }
   if (status == UMFPACK_OK) {
-    status = umfpack_di_numeric(start, rows, values, f.symbolic, &f.numeric, f.control.data(), f.info.data());
+    status = umfpack().numeric(start, rows, values, f.symbolic, &f.numeric, f.control.data(), f.info.data());
   }
   reciprocal_condition_ = status == UMFPACK_OK ? f.info[UMFPACK_RCOND] : 0.0;
   if (status == UMFPACK_OK) return LuOutcome::ok;
-  umfpack_di_free_numeric(&f.numeric);
+  umfpack().free_numeric(&f.numeric);
   if (status == UMFPACK_WARNING_singular_matrix) return LuOutcome::singular;
   MULDI_EXPECT(status == UMFPACK_ERROR_out_of_memory, "UMFPACK accepts every square matrix with ascending rows");
   return LuOutcome::out_of_memory;
+}
+
+int SparseLu::determinant_sign() const {
+  double mantissa = 0.0;
+  double exponent = 0.0;
+  umfpack().determinant(&mantissa, &exponent, factor_->numeric, factor_->info.data());
+  return mantissa > 0.0 ? 1 : mantissa < 0.0 ? -1 : 0;
 }
 
 void SparseLu::solve(const Eigen::Ref<const Eigen::VectorXd>& b, Eigen::Ref<Eigen::VectorXd> x) const {
@@ -119,8 +155,8 @@ void SparseLu::solve(const Eigen::Ref<const Eigen::VectorXd>& b, Eigen::Ref<Eige
   MULDI_EXPECT(f.numeric != nullptr, "there is a factor");
   MULDI_EXPECT(b.size() == f.matrix.rows() && x.size() == b.size() && x.data() != b.data(),
                "vectors of the matrix' size");
-  const int status = umfpack_di_solve(UMFPACK_A, f.matrix.outerIndexPtr(), f.matrix.innerIndexPtr(),
-                                      f.matrix.valuePtr(), x.data(), b.data(), f.numeric, f.control.data(), nullptr);
+  const int status = umfpack().solve(UMFPACK_A, f.matrix.outerIndexPtr(), f.matrix.innerIndexPtr(), f.matrix.valuePtr(),
+                                     x.data(), b.data(), f.numeric, f.control.data(), nullptr);
   if (status == UMFPACK_ERROR_out_of_memory) throw std::bad_alloc();
   MULDI_EXPECT(status == UMFPACK_OK || status == UMFPACK_WARNING_singular_matrix, "UMFPACK solves with its factor");
 }

@@ -24,6 +24,7 @@ void refill(Eigen::SparseMatrix<double>& full, const SymmetricBlockMatrix& matri
 /// One factor with partial pivoting; the analysis is kept while the pattern stays the same.
 class SparseLu {
  public:
+  /// EnvironmentError if UMFPACK is not installed.
   SparseLu();
   ~SparseLu();
   SparseLu(SparseLu&&) noexcept;
@@ -33,6 +34,8 @@ class SparseLu {
   LuOutcome factorise(const Eigen::SparseMatrix<double>& matrix);
   /// x = A^-1 b, after a factorisation that was ok; b and x are not the same vector.
   void solve(const Eigen::Ref<const Eigen::VectorXd>& b, Eigen::Ref<Eigen::VectorXd> x) const;
+  /// Of the determinant, after a factorisation that was ok: -1 for an odd number of negative eigenvalues.
+  int determinant_sign() const;
   /// Rough estimate of the reciprocal condition number (least over greatest pivot).
   double reciprocal_condition() const { return reciprocal_condition_; }
 

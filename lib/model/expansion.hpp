@@ -13,17 +13,22 @@
 #include <string>
 #include <vector>
 
+#include "model/end_coordinate.hpp"
 #include "model/linear_point.hpp"
 
 namespace muldi::model {
 
-/// The linear forms that a piece depends on; one of the three is given.
+/// The forms that a piece depends on, linear but for the last; one of the four is given.
 struct LocalForms {
   std::span<const LinearPoint> points = {};  ///< three forms each
   std::span<const int> entries = {};         ///< unknowns of q
   int rate = -1;                             ///< a coordinate theta of the manifold; F acts on its rate
+  /// Of a loop-closing joint; F acts on its rate, with the gradients at either end. It outlives the sink.
+  const EndCoordinate* coordinate = nullptr;
 
-  int size() const { return rate >= 0 ? 1 : static_cast<int>(3 * points.size() + entries.size()); }
+  int size() const {
+    return rate >= 0 || coordinate != nullptr ? 1 : static_cast<int>(3 * points.size() + entries.size());
+  }
 };
 
 /// Derivatives of one piece by y = (xi, xi', s): m forms, their rates, c controls.
@@ -31,6 +36,7 @@ struct LocalExpansion {
   std::span<const int> controls;        ///< of the model (c)
   const Eigen::MatrixXd& tangent;       ///< d(F, pi)/dy (2 m, 2 m + c)
   const Eigen::MatrixXd* hessian = {};  ///< d2 Psi/dy2 (2 m + c, 2 m + c); null where not asked for
+  double force = 0.0;                   ///< F itself, of EndCoordinates
 };
 
 /// Takes the pieces; their order and their forms are the same in every call.

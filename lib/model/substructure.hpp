@@ -123,6 +123,12 @@ class Substructure : public IntervalTerm {
   virtual SolverSize solver_size(Linearisation kind, const std::string& name) const = 0;
   /// Largest entries of an increment relative to the natural sizes of the part.
   virtual IncrementSize size_of(const Eigen::VectorXd& dq, const Eigen::VectorXd& dy) const = 0;
+  /// Largest displacement relative to the natural size that is no motion along with the bodies which the part is tied
+  /// to; q (n_q) is the configuration that dq starts from.
+  virtual double deformation(const Eigen::VectorXd& q, const Eigen::VectorXd& dq) const = 0;
+  /// Adds to the slice of q what it shares of a motion of the bodies that the part is tied to: `motion` (n_q) holds the
+  /// changes of phi, d1, d2, d3, and `before` the configuration in which nodes go with them as if fixed there.
+  virtual void carry(const Eigen::VectorXd& before, const Eigen::VectorXd& motion, Eigen::VectorXd& q) const = 0;
   /// Length that its displacements are measured by.
   virtual double natural_length() const = 0;
   /// At rest, after the point's forces: adds to `rows` (n_q) and `h` (n_y) the derivatives of the balance and of the

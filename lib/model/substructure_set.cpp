@@ -41,6 +41,19 @@ IncrementSize SubstructureSet::size_of(const Eigen::VectorXd& dq, const Eigen::V
   return largest;
 }
 
+double SubstructureSet::deformation(const Eigen::VectorXd& q, const Eigen::VectorXd& dq) const {
+  double largest = 0.0;
+  for (const auto& part : model_.substructures) {
+    const double one = part->deformation(q, dq);
+    if (!(one <= largest)) largest = one;
+  }
+  return largest;
+}
+
+void SubstructureSet::carry(const Eigen::VectorXd& before, const Eigen::VectorXd& motion, Eigen::VectorXd& q) const {
+  for (const auto& part : model_.substructures) part->carry(before, motion, q);
+}
+
 double SubstructureSet::product(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
   double sum = 0.0;
   Eigen::Index n_nodes = 0;

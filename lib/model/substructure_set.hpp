@@ -24,6 +24,10 @@ class SubstructureSet {
   void gather(Eigen::VectorXd& rows) const;
   /// Largest entries of an increment over all parts; 0 without parts.
   IncrementSize size_of(const Eigen::VectorXd& dq, const Eigen::VectorXd& dy) const;
+  /// See Substructure::deformation: the largest of all parts.
+  double deformation(const Eigen::VectorXd& q, const Eigen::VectorXd& dq) const;
+  /// See Substructure::carry.
+  void carry(const Eigen::VectorXd& before, const Eigen::VectorXd& motion, Eigen::VectorXd& q) const;
   /// Mean product of the positions' increments over all parts, each in its natural length; 0 without parts.
   double product(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const;
   /// See Substructure::add_load_rate.

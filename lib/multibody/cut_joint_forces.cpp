@@ -1,8 +1,5 @@
 #include "multibody/cut_joint_forces.hpp"
 
-#include <cmath>
-#include <numbers>
-
 namespace muldi::multibody {
 namespace {
 
@@ -13,10 +10,8 @@ struct MiddleOf {
 
   MiddleOf(const model::IntervalPoint& at, const JointCoordinate& coordinate) : position(coordinate.value(at.q1)) {
     if (!(at.dt > 0.0)) return;
-    const double begin = coordinate.value(at.q0);
-    double advance = position - begin;
-    if (coordinate.is_angle()) advance = std::remainder(advance, 2.0 * std::numbers::pi);
-    position = begin + 0.5 * advance;
+    const double advance = coordinate.advance(at.q0, at.q1);
+    position = coordinate.value(at.q0) + 0.5 * advance;
     rate = advance / at.dt;
   }
 };
@@ -86,6 +81,24 @@ void CutJointForces::add_control_force(const model::IntervalPoint& at, int contr
   for (const CutJointForce& force : forces_) {
     if (force.law.control == control) force.coordinate.add_gradient(at.q, force.law.control_factor, out);
   }
+}
+
+bool CutJointForces::expand(const model::IntervalPoint& at, const model::ExpansionRequest& request,
+                            model::ExpansionSink& sink) const {
+  Eigen::MatrixXd tangent = Eigen::MatrixXd::Zero(2, 3);
+  const Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(3, 3);
+  for (const CutJointForce& force : forces_) {
+    const int control = force.law.control;
+    if (control >= 0 && request.squared[static_cast<std::size_t>(control)] != 0.0) return false;
+    const MiddleOf middle(at, force.coordinate);
+    const JointForce::Response r = force.law.respond(middle.position, middle.rate, at.u);
+    tangent.row(0) << r.by_position, r.by_rate, control < 0 ? 0.0 : force.law.control_factor;
+    sink.add({.coordinate = &force.coordinate}, {.controls = {&control, 1},
+                                                 .tangent = tangent,
+                                                 .hessian = request.a != nullptr ? &hessian : nullptr,
+                                                 .force = r.force});
+  }
+  return true;
 }
 
 model::IntervalWork CutJointForces::work(const model::IntervalPoint& at) const {

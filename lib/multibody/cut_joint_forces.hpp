@@ -27,6 +27,9 @@ class CutJointForces final : public model::IntervalTerm {
   void add_tangent(const model::IntervalPoint& at, const model::TangentWeights& weights,
                    math::BlockMatrix& K) const override;
   void add_control_force(const model::IntervalPoint& at, int control, Eigen::VectorXd& out) const override;
+  /// Forces are linear in pieces of their coordinates: all second derivatives are those of the coordinates.
+  bool expand(const model::IntervalPoint& at, const model::ExpansionRequest& request,
+              model::ExpansionSink& sink) const override;
   model::IntervalWork work(const model::IntervalPoint& at) const override;
   std::vector<std::string> parts() const override { return parts_.names; }
   void energies(const model::NodePoint& at, std::span<model::Energy> out) const override;

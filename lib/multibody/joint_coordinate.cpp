@@ -1,6 +1,7 @@
 #include "multibody/joint_coordinate.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include "base/error.hpp"
 
@@ -117,6 +118,68 @@ JointCoordinate::LocalMatrix JointCoordinate::hessian(const Eigen::VectorXd& q) 
   const LocalVector radial = (S * grad_S + C * grad_C) / r2;
   result.noalias() -= slope * radial.transpose() + radial * slope.transpose();
   return result;
+}
+
+void JointCoordinate::sine_cosine_hessians(LocalMatrix& of_sine, LocalMatrix& of_cosine) const {
+  of_sine.setZero();
+  of_cosine.setZero();
+  for (const Product& product : sine_) {
+    if (product.sign != 0.0) local_hessian(product.form, product.sign, of_sine);
+  }
+  for (const Product& product : cosine_) {
+    if (product.sign != 0.0) local_hessian(product.form, product.sign, of_cosine);
+  }
+}
+
+JointCoordinate::LocalMatrix JointCoordinate::hessian_slope(const Eigen::VectorXd& q, const Eigen::VectorXd& a) const {
+  LocalMatrix result = LocalMatrix::Zero();
+  if (!is_angle_) return result;
+  const auto [S, C] = sine_cosine(q);
+  const double r2 = S * S + C * C;
+  LocalVector grad_S;
+  LocalVector grad_C;
+  LocalMatrix hess_S;
+  LocalMatrix hess_C;
+  sine_cosine_gradients(q, grad_S, grad_C);
+  sine_cosine_hessians(hess_S, hess_C);
+  LocalVector along = LocalVector::Zero();
+  for (std::size_t i = 0; i < nodes().size(); ++i) {
+    along.segment<12>(static_cast<Eigen::Index>(12 * i)) = a.segment<12>(12 * nodes_[i]);
+  }
+  // Slopes along a of all that the Hessian is made of.
+  const double dS = grad_S.dot(along);
+  const double dC = grad_C.dot(along);
+  const double dr2 = 2.0 * (S * dS + C * dC) / r2;
+  const LocalVector d_grad_S = hess_S * along;
+  const LocalVector d_grad_C = hess_C * along;
+  const LocalVector slope = (C * grad_S - S * grad_C) / r2;
+  const LocalVector radial = (S * grad_S + C * grad_C) / r2;
+  const LocalVector d_slope = (dC * grad_S + C * d_grad_S - dS * grad_C - S * d_grad_C) / r2 - dr2 * slope;
+  const LocalVector d_radial = (dS * grad_S + S * d_grad_S + dC * grad_C + C * d_grad_C) / r2 - dr2 * radial;
+  const LocalMatrix half = d_slope * radial.transpose() + slope * d_radial.transpose();
+  result = ((dC - dr2 * C) * hess_S - (dS - dr2 * S) * hess_C) / r2 - half - half.transpose();
+  return result;
+}
+
+std::vector<int> JointCoordinate::unknowns() const {
+  std::vector<int> all;
+  for (const int node : nodes()) {
+    for (int k = 0; k < 12; ++k) all.push_back(12 * node + k);
+  }
+  return all;
+}
+
+double JointCoordinate::advance(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1) const {
+  const double difference = value(q1) - value(q0);
+  return is_angle_ ? std::remainder(difference, 2.0 * std::numbers::pi) : difference;
+}
+
+void JointCoordinate::differentiate(const Eigen::VectorXd& q, const Eigen::VectorXd* a,
+                                    model::EndDerivatives& out) const {
+  const Eigen::Index n = 12 * n_nodes_;
+  out.gradient = gradient(q).head(n);
+  out.hessian = hessian(q).topLeftCorner(n, n);
+  if (a != nullptr) out.hessian_slope = hessian_slope(q, *a).topLeftCorner(n, n);
 }
 
 double JointCoordinate::rate(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const {

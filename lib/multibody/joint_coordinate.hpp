@@ -5,12 +5,13 @@
 #include <span>
 
 #include "model/bilinear.hpp"
+#include "model/end_coordinate.hpp"
 #include "multibody/joint.hpp"
 
 namespace muldi::multibody {
 
 /// A slide z = e_axis^A . p - z_0, or an angle theta = atan2(S, C) with S, C sums of products e_a^A . e_b^B.
-class JointCoordinate {
+class JointCoordinate final : public model::EndCoordinate {
  public:
   /// `motion` must not be a ball.
   JointCoordinate(const Joint& joint, const Motion& motion);
@@ -30,6 +31,12 @@ class JointCoordinate {
   /// Gradient and Hessian in local unknowns (node by node).
   LocalVector gradient(const Eigen::VectorXd& q) const;
   LocalMatrix hessian(const Eigen::VectorXd& q) const;
+  /// d/d eps of the Hessian at q + eps a.
+  LocalMatrix hessian_slope(const Eigen::VectorXd& q, const Eigen::VectorXd& a) const;
+
+  std::vector<int> unknowns() const override;
+  double advance(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1) const override;
+  void differentiate(const Eigen::VectorXd& q, const Eigen::VectorXd* a, model::EndDerivatives& out) const override;
 
  private:
   struct Product {
@@ -45,6 +52,8 @@ class JointCoordinate {
   void sine_cosine_gradients(const Eigen::VectorXd& q, LocalVector& of_sine, LocalVector& of_cosine) const;
   void local_gradient(const model::Bilinear& form, const Eigen::VectorXd& q, double factor, LocalVector& out) const;
   void local_hessian(const model::Bilinear& form, double factor, LocalMatrix& out) const;
+  /// Local Hessians of S and C, which do not depend on q.
+  void sine_cosine_hessians(LocalMatrix& of_sine, LocalMatrix& of_cosine) const;
   int local(int node, int dof) const { return dof - 12 * node + (nodes_[0] == node ? 0 : 12); }
 
   bool is_angle_ = false;

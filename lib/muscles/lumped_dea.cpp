@@ -15,7 +15,8 @@ std::string LumpedDea::advice(double z, double zd, const Controls<double, 1>& fi
   const double limit = buckling_load(z, field[0]);
   if (push <= limit) return {};
   return base::format(
-      "compressed with {} beyond its buckling load {} as a slender pinned rod; a lumped muscle stays straight",
+      "compressed with {} beyond its buckling load {} as a slender pinned rod; a lumped muscle stays straight: where "
+      "that matters take `model: fe`, a shorter or thicker muscle, or less compression",
       base::number_text(push, 4), base::number_text(limit, 4));
 }
 

@@ -1,12 +1,13 @@
 #include "pipeline/check_derivatives.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "build/solid_checks.hpp"
 #include "control/solve.hpp"
-#include "math/derivative_check.hpp"
+#include "math/check_numbers.hpp"
+#include "pipeline/checked_line.hpp"
 #include "pipeline/initial_state.hpp"
 #include "pipeline/optimal_guess.hpp"
 #include "pipeline/optimal_problem.hpp"
@@ -14,43 +15,7 @@
 namespace muldi::pipeline {
 namespace {
 
-constexpr double error_limit = 1e-6;
 constexpr double shift = 2e-4;  // of the size of the scene: small beside the ranges of stops and cables
-
-/// The same numbers in [-1, 1) on every machine.
-class Numbers {
- public:
-  double next() {
-    state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
-    return static_cast<double>(state_ >> 11U) * 0x1.0p-52 - 1.0;
-  }
-  Eigen::VectorXd vector(Eigen::Index n) {
-    Eigen::VectorXd values(n);
-    for (double& value : values) value = next();
-    return values;
-  }
-
- private:
-  std::uint64_t state_ = 1;
-};
-
-/// A function along a line s -> f(s) with its given derivative at s = 0.
-CheckedDerivative along(std::string of, const std::function<Eigen::VectorXd(double)>& f, const Eigen::VectorXd& given) {
-  const math::VectorFunction line = [&](const Eigen::VectorXd& s) { return f(s[0]); };
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(1);
-  const Eigen::VectorXd one = Eigen::VectorXd::Ones(1);
-  const math::DerivativeError error = math::derivative_error(given, math::difference_jacobian(line, zero, one));
-  const math::TaylorTest taylor = math::taylor_test(line, {given}, {.x = zero, .direction = one, .first_step = 1.0});
-  // What is below the round-off of the function is nothing.
-  const double least = 1e-9 * f(0.0).lpNorm<Eigen::Infinity>();
-  const bool nothing =
-      given.lpNorm<Eigen::Infinity>() <= least && std::max(std::abs(error.given), std::abs(error.expected)) <= least;
-  return {.of = std::move(of),
-          .error = nothing ? 0.0 : error.relative,
-          .slope = taylor.slope,
-          .expected = 2.0,
-          .passed = nothing || error.relative < error_limit};
-}
 
 scene::Named<scene::ControlBounds> bounds_of(const scene::Scene& scene) {
   return scene.optimal_control ? scene.optimal_control->controls : scene::Named<scene::ControlBounds>{};
@@ -60,21 +25,20 @@ scene::Named<scene::ControlBounds> bounds_of(const scene::Scene& scene) {
 class ModelCheck {
  public:
   ModelCheck(const scene::Scene& scene, const build::BuiltModel& built)
-      : model_(*built.model), manifold_(*built.manifold) {
+      : model_(*built.model), manifold_(*built.manifold), built_(built), start_(starting_point(scene, built)) {
     dt_ = scene.dynamics          ? scene.dynamics->step
           : scene.optimal_control ? scene.optimal_control->duration.max / scene.optimal_control->n_steps()
                                   : 1e-3 / scene.units.si(base::dimension::time);
-    const statics::StaticState start = starting_point(scene, built);
     const Eigen::VectorXd scale = manifold_.rate_scale();
     const auto near = [&](const Eigen::VectorXd& from, Eigen::VectorXd& x, Eigen::VectorXd& q) {
       x = from;
       manifold_.retract(from, 0.01 * numbers_.vector(manifold_.n_v()).cwiseProduct(scale), x);
-      q = start.q;
+      q = start_.q;
       manifold_.configuration(x, q);
     };
-    near(start.x, x0_, q0_);
+    near(start_.x, x0_, q0_);
     near(x0_, x1_, q1_);
-    y_ = start.y;
+    y_ = start_.y;
     u_.resize(model_.controls.size());
     model_.evaluate_controls(0.5 * dt_, u_);
     // A control at zero hides what is multiplied by it.
@@ -93,6 +57,13 @@ class ModelCheck {
   std::vector<CheckedDerivative> run() {
     for (const auto& term : model_.terms) check(*term);
     for (const auto& part : model_.substructures) check_energies(*part, name_of(*part));
+    std::vector<std::string> names;
+    names.reserve(u_.size());
+    for (const model::Control& control : model_.controls) names.push_back(control.name);
+    build::check_solids(built_, {.q = start_.q, .y = start_.y, .u = u_, .control_names = names, .dt = dt_},
+                        [&](const std::string& of, const auto& f, const Eigen::VectorXd& given) {
+                          found_.push_back(checked_line(of, f, given));
+                        });
     return std::move(found_);
   }
 
@@ -166,7 +137,7 @@ class ModelCheck {
         const model::IntervalForces at = one.by_velocity ? forces(term, q_, moved, u_) : forces(term, moved, v_, u_);
         return one.of_force ? at.force : at.momentum;
       };
-      found_.push_back(along(name + ": " + one.what, f, given));
+      found_.push_back(checked_line(name + ": " + one.what, f, given));
     }
   }
 
@@ -183,7 +154,7 @@ class ModelCheck {
       const model::IntervalForces at = forces(term, 0.5 * (q0_ + q1), (q1 - q0_) / dt_, u_);
       return at.momentum - 0.5 * dt_ * at.force - at.begin;
     };
-    found_.push_back(along(name + ": balance of a step by its end", f, given));
+    found_.push_back(checked_line(name + ": balance of a step by its end", f, given));
   }
 
   void check_controls(const model::IntervalTerm& term, const std::string& name) {
@@ -204,7 +175,7 @@ class ModelCheck {
         return all;
       };
       if (both.isZero(0.0) && (f(1.0) - f(0.0)).isZero(0.0)) continue;
-      found_.push_back(along(base::format("{}: force by control {}", name, model_.controls[c].name), f, both));
+      found_.push_back(checked_line(base::format("{}: force by control {}", name, model_.controls[c].name), f, both));
     }
   }
 
@@ -225,7 +196,8 @@ class ModelCheck {
         manifold_.retract(x1, s * direction, x1_);
         return forces(term, q_, v_, u_).on_rates;
       };
-      found_.push_back(along(name + (by_velocity ? ": joint force by rate" : ": joint force by coordinate"), f, given));
+      found_.push_back(
+          checked_line(name + (by_velocity ? ": joint force by rate" : ": joint force by coordinate"), f, given));
       x0_ = x0;
       x1_ = x1;
     }
@@ -245,12 +217,14 @@ class ModelCheck {
       for (const model::Energy& part : parts) sum += part.kinetic;
       return Eigen::VectorXd::Constant(1, sum);
     };
-    found_.push_back(along(name + ": kinetic energy by velocity", f, given));
+    found_.push_back(checked_line(name + ": kinetic energy by velocity", f, given));
   }
 
   const model::Model& model_;
   const model::Manifold& manifold_;
-  Numbers numbers_;
+  const build::BuiltModel& built_;
+  const statics::StaticState start_;
+  math::CheckNumbers numbers_;
   double dt_ = 0.0;
   double size_ = 1.0;
   double largest_control_ = 1.0;
@@ -264,7 +238,7 @@ void add_optimal_control(const scene::Scene& scene, const build::BuiltModel& bui
   variational::State start;
   if (!initial_state(scene, built, {}, start).completed()) return;
   const OptimalProblem problem = build_optimal_problem(scene, built, start.x);
-  const control::Trajectory guess = make_guess(scene, problem.problem, 0);
+  const control::Trajectory guess = make_guess(scene, built, problem.problem, 0);
   refuse_faults(scene, control::find_faults(problem.problem, guess));
   for (std::size_t i = 0; i < problem.stages.size(); ++i) {
     for (const control::DerivativeCheck& one : control::check_derivatives(problem.problem, problem.stages[i], guess)) {

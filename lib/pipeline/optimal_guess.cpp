@@ -5,10 +5,9 @@
 #include <random>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
 #include "control/solve.hpp"
 #include "pipeline/optimal_problem.hpp"
-#include "results/result_file.hpp"
+#include "pipeline/recorded_motion.hpp"
 
 namespace muldi::pipeline {
 namespace {
@@ -67,53 +66,6 @@ void straighten(const control::Problem& problem, std::vector<Eigen::VectorXd>& x
   for (std::size_t i = 1; i < x.size(); ++i) manifold.retract(first, static_cast<double>(i) / n * way, x[i]);
 }
 
-/// The rows of a matrix in a record.
-std::vector<std::vector<double>> rows_of(const results::ResultFile& file, const std::string& path,
-                                         std::size_t n_columns) {
-  const results::Array array = file.read(path);
-  const std::size_t n_rows = array.shape.empty() ? 0 : array.shape[0];
-  if (array.shape.size() != 2 || array.shape[1] != n_columns) {
-    throw base::InputError(base::format("'{}' is of another system: {} has other columns", file.path(), path));
-  }
-  std::vector<std::vector<double>> rows;
-  rows.reserve(n_rows);
-  for (std::size_t i = 0; i < n_rows; ++i) {
-    const auto first = array.values.begin() + static_cast<std::ptrdiff_t>(i * n_columns);
-    rows.emplace_back(first, first + static_cast<std::ptrdiff_t>(n_columns));
-  }
-  return rows;
-}
-
-/// The trajectory that an earlier optimisation left, finished or not.
-control::Trajectory recorded_trajectory(const scene::Scene& scene, const control::Problem& problem) {
-  const results::ResultFile file(scene::path_of_file(scene, scene.optimal_control->guess.file));
-  const std::string folder = "optimum/trajectory/";
-  if (!file.contains(folder + "coordinates")) {
-    throw base::InputError(base::format("'{}' holds no optimum to start from", file.path()));
-  }
-  control::Trajectory found;
-  found.step = file.read(folder + "step").values.at(0);
-  const auto as_vectors = [](const std::vector<std::vector<double>>& rows) {
-    std::vector<Eigen::VectorXd> vectors;
-    vectors.reserve(rows.size());
-    for (const std::vector<double>& row : rows) {
-      vectors.emplace_back(Eigen::Map<const Eigen::VectorXd>(row.data(), static_cast<Eigen::Index>(row.size())));
-    }
-    return vectors;
-  };
-  const model::Manifold& manifold = *problem.model.manifold;
-  found.x = as_vectors(rows_of(file, folder + "coordinates", static_cast<std::size_t>(manifold.n_x())));
-  found.u = rows_of(file, folder + "controls", problem.model.controls.size());
-  if (found.x.size() != found.u.size() + 1) {
-    throw base::InputError(base::format("'{}' holds an incomplete optimum", file.path()));
-  }
-  if (file.contains(folder + "multipliers")) {
-    found.multipliers =
-        as_vectors(rows_of(file, folder + "multipliers", static_cast<std::size_t>(manifold.n_loop_rows())));
-  }
-  return found;
-}
-
 }  // namespace
 
 int n_guesses(const scene::Scene& scene) {
@@ -121,7 +73,8 @@ int n_guesses(const scene::Scene& scene) {
   return guess.kind == scene::Guess::Kind::random ? guess.random.starts : 1;
 }
 
-control::Trajectory make_guess(const scene::Scene& scene, const control::Problem& problem, int start) {
+control::Trajectory make_guess(const scene::Scene& scene, const build::BuiltModel& built,
+                               const control::Problem& problem, int start) {
   using Kind = scene::Guess::Kind;
   const scene::Guess& guess = scene.optimal_control->guess;
   const double step = 0.5 * (problem.horizon.shortest_step + problem.horizon.longest_step);
@@ -155,7 +108,10 @@ control::Trajectory make_guess(const scene::Scene& scene, const control::Problem
       break;
   }
   try {
-    return control::refined_guess(problem, recorded_trajectory(scene, problem));
+    const std::string path = scene::path_of_file(scene, guess.file);
+    control::Trajectory found = control::refined_guess(problem, recorded_motion(scene, built, problem, path));
+    clamp(problem, found.u);
+    return found;
   } catch (const base::InputError& error) {
     throw base::InputError({scene::error_at(guess.origin, error.diagnostics().front().message)});
   }

@@ -58,7 +58,11 @@ bool is_better(const std::vector<StageEnd>& a, const std::vector<StageEnd>& b) {
 }
 
 Outcome outcome_of(const StageEnd& last) {
-  return {.status = status_of(last.result.status), .sentence = last.result.sentence, .time = last.result.worst_time};
+  std::string sentence = last.result.sentence;
+  if (!is_good(last.result) && !last.result.worst_constraint.empty()) {
+    sentence += base::format("; the largest violation is that of {}", last.result.worst_constraint);
+  }
+  return {.status = status_of(last.result.status), .sentence = sentence, .time = last.result.worst_time};
 }
 
 /// All stages from all guesses.
@@ -74,7 +78,7 @@ class Stages {
     const int n_starts = n_guesses(scene_);
     bool interrupted = false;
     for (int start = 0; start < n_starts && !interrupted; ++start) {
-      control::Trajectory guess = start == 0 ? std::move(first) : make_guess(scene_, problem_.problem, start);
+      control::Trajectory guess = start == 0 ? std::move(first) : make_guess(scene_, built_, problem_.problem, start);
       std::vector<StageEnd> ends = solve(start, std::move(guess), record);
       const StageEnd& last = ends.back();
       if (last.result.status == SolveStatus::unavailable) throw base::EnvironmentError(last.result.sentence);
@@ -135,7 +139,7 @@ void validate_optimal_control(const scene::Scene& scene, const build::BuiltModel
   variational::State start;
   if (!initial_state(scene, built, earlier, start).completed()) return;
   const OptimalProblem problem = build_optimal_problem(scene, built, start.x);
-  const control::Trajectory guess = make_guess(scene, problem.problem, 0);
+  const control::Trajectory guess = make_guess(scene, built, problem.problem, 0);
   refuse_faults(scene, control::find_faults(problem.problem, guess));
   if (scene.optimal_control->replay) build_replay(scene);
 }
@@ -154,7 +158,7 @@ Optimised optimise(const scene::Scene& scene, const build::BuiltModel& built, re
     result.outcome = initial_state(scene, built, setup.earlier, start);
     if (result.outcome.completed()) {
       problem.emplace(build_optimal_problem(scene, built, start.x));
-      guess = make_guess(scene, problem->problem, 0);
+      guess = make_guess(scene, built, problem->problem, 0);
       refuse_faults(scene, control::find_faults(problem->problem, *guess));
     }
     rows.emplace(recorder, scene, built, NodeRows::Kind::dynamics,

@@ -14,8 +14,7 @@ void set_provenance(results::Recorder& recorder, const scene::Scene& scene, cons
   recorder.set_attribute("", "format", std::int64_t{scene::format_version});
   text("title", scene.title);
   text("scene", scene::resolved_text(scene));
-  text("units",
-       scene.units.length() + ", " + scene.units.mass() + ", " + scene.units.time() + ", " + scene.units.current());
+  text("units", units_text(scene));
   text("command_line", context.command_line);
   text("git_hash", std::string(build.commit));
   text("compiler", std::string(build.compiler) + " " + std::string(build.flags));
@@ -32,6 +31,10 @@ void set_provenance(results::Recorder& recorder, const scene::Scene& scene, cons
   char created[32];
   std::strftime(created, sizeof created, "%Y-%m-%dT%H:%M:%SZ", &utc);
   text("created", created);
+}
+
+std::string units_text(const scene::Scene& scene) {
+  return scene.units.length() + ", " + scene.units.mass() + ", " + scene.units.time() + ", " + scene.units.current();
 }
 
 void set_wall_times(results::Recorder& recorder, const base::Phases& phases) {

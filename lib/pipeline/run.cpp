@@ -32,16 +32,6 @@ variational::LoopOptions loop_options(const scene::Scene& scene, const build::Bu
   return options;
 }
 
-std::string warning_of(const variational::StepReport& report, const variational::StepOptions& options, double t) {
-  if (report.rotation > options.warn_rotation) {
-    return base::format(
-        "at t = {:.6g} a body turns by {:.3g} rad in one step; results lose accuracy, use a smaller step", t,
-        report.rotation);
-  }
-  return base::format("at t = {:.6g} the loops come near a change point (regularity {:.3g} of that at the start)", t,
-                      report.loop_regularity);
-}
-
 /// The dynamics of a run, with what is restored from and put into checkpoints.
 class DynamicsRun {
  public:
@@ -84,11 +74,11 @@ class DynamicsRun {
     };
     callbacks.interrupted = context.interrupted;
     callbacks.warn = [&](const variational::StepReport& report, double t) {
-      if (context.warn) context.warn(warning_of(report, options_.step, t));
+      if (context.warn) context.warn(warning_of(report, t));
     };
     const variational::LoopResult result = loop_->run(state_, ledger_, last_, callbacks);
     if (result.status == variational::Status::no_convergence) return failure(result);
-    return {.status = result.status, .sentence = result.sentence, .time = result.t};
+    return {.status = result.status, .sentence = with_name(result.sentence), .time = result.t};
   }
 
  private:
@@ -110,20 +100,53 @@ class DynamicsRun {
     const double turn = expected_turn();
     if (turn <= longest_turn) return {.status = result.status, .sentence = result.sentence, .time = result.t};
     return {.status = variational::Status::step_too_large,
-            .sentence = base::format("a body turns by {:.3g} rad in one step (limit {:g}): use a smaller step", turn,
-                                     longest_turn),
+            .sentence = with_name(base::format(
+                "a body turns by {:.3g} rad in one step (limit {:g}): use a smaller step", turn, longest_turn)),
             .time = result.t};
   }
 
-  /// Largest turn of a body (rad) in the next step at the present speed.
-  double expected_turn() const {
-    const double part = 1.0 / 16.0;  // of the step: angles beyond a half turn look small
-    const model::Manifold& manifold = *built_.manifold;
+  static constexpr double small_part = 1.0 / 16.0;  // of the next step: angles beyond a half turn look small
+
+  /// The configuration a part of the next step ahead, at the present speed.
+  Eigen::VectorXd ahead() const {
     Eigen::VectorXd x = state_.x;
     Eigen::VectorXd q = state_.q;
-    manifold.retract(state_.x, part * state_.increment, x);
-    manifold.configuration(x, q);
-    return manifold.largest_rotation(state_.q, q) / part;
+    built_.manifold->retract(state_.x, small_part * state_.increment, x);
+    built_.manifold->configuration(x, q);
+    return q;
+  }
+
+  /// Largest turn of a body (rad) in the next step at the present speed.
+  double expected_turn() const { return built_.manifold->largest_rotation(state_.q, ahead()) / small_part; }
+
+  /// The sentence about `a body` with the name of the one that turns fastest.
+  std::string with_name(const std::string& sentence) const {
+    constexpr std::string_view any = "a body";
+    if (!sentence.starts_with(any) || scene_.bodies.size() == 0) return sentence;
+    const Eigen::VectorXd q = ahead();
+    double largest = -1.0;
+    std::size_t fastest = 0;
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(12 * i + 3);
+      const double change = (q.segment<9>(at) - state_.q.segment<9>(at)).norm();
+      if (change <= largest) continue;
+      largest = change;
+      fastest = i;
+    }
+    return base::format("body '{}'", scene_.bodies[fastest].name) + sentence.substr(any.size());
+  }
+
+  std::string warning_of(const variational::StepReport& report, double t) const {
+    const std::string at = base::format("at t = {:.6g} {}: ", t, scene_.units.time());
+    if (report.rotation > options_.step.warn_rotation) {
+      return at + with_name(base::format(
+                      "a body turns by {:.3g} rad in one step; results lose accuracy: take a smaller dynamics.step",
+                      report.rotation));
+    }
+    return at + base::format(
+                    "the loops come near a change point (regularity {:.3g} of that at the start), where the mechanism "
+                    "may go on in two ways: check the motion with half the dynamics.step",
+                    report.loop_regularity);
   }
 
   /// Says once what the terms find remarkable.
@@ -133,7 +156,7 @@ class DynamicsRun {
     const std::string sentence = built_.model->advice({.x = x, .q = node.state.q, .v = node.values.v, .u = node.u});
     if (sentence.empty()) return;
     advised_ = true;
-    context.warn(base::format("at t = {:.6g}: {}", node.t, sentence));
+    context.warn(base::format("at t = {:.6g} {}: {}", node.t, scene_.units.time(), sentence));
   }
 
   bool advised_ = false;

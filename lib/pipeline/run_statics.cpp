@@ -8,45 +8,38 @@
 
 namespace muldi::pipeline {
 
-StaticsRun::StaticsRun(const scene::Scene& scene, const build::BuiltModel& built, results::Recorder& recorder)
-    : scene_(scene),
-      built_(built),
-      recorder_(recorder),
+StaticLoads static_loads(const scene::Scene& scene, const build::BuiltModel& built) {
+  const scene::Statics& said = *scene.statics;
+  StaticLoads loads;
+  loads.fixed.resize(built.model->controls.size());
+  built.model->evaluate_controls(0.0, loads.fixed);
+  loads.direction.assign(loads.fixed.size(), 0.0);
+  loads.options.steps = said.steps;
+  if (said.control) {
+    const auto swept = static_cast<std::size_t>(scene.controls.index(said.control->name));
+    loads.fixed[swept] = 0.0;
+    loads.direction[swept] = 1.0;
+    loads.options.from = said.from;
+    loads.options.to = *said.to;
+  } else {
+    std::swap(loads.fixed, loads.direction);
+  }
+  loads.options.continuation = said.continuation == scene::Continuation::natural ? statics::Continuation::natural
+                                                                                 : statics::Continuation::arc_length;
+  loads.options.equilibrium = {.tolerance = scene.solver.tolerance, .substructures = built.solid_linear};
+  return loads;
+}
+
+EquilibriumRows::EquilibriumRows(results::Recorder& recorder, const scene::Scene& scene, const build::BuiltModel& built)
+    : built_(built),
+      last_load_(scene.statics->control ? *scene.statics->to : 1.0),
       rows_(recorder, scene, built, NodeRows::Kind::statics, static_cast<std::size_t>(scene.statics->steps) + 1),
       parts_(built.model->parts().size()),
       zero_q_(Eigen::VectorXd::Zero(built.model->n_q())),
       zero_v_(Eigen::VectorXd::Zero(built.manifold->n_v())),
       constraint_force_(zero_q_) {}
 
-void StaticsRun::prepare() {
-  state_ = starting_point(scene_, built_);
-  make_sweep();
-}
-
-void StaticsRun::make_sweep() {
-  const scene::Statics& said = *scene_.statics;
-  std::vector<double> u(built_.model->controls.size());
-  built_.model->evaluate_controls(0.0, u);
-  std::vector<double> direction(u.size(), 0.0);
-  statics::SweepOptions options{.steps = said.steps};
-  if (said.control) {
-    const auto swept = static_cast<std::size_t>(scene_.controls.index(said.control->name));
-    u[swept] = 0.0;
-    direction[swept] = 1.0;
-    options.from = said.from;
-    options.to = *said.to;
-  } else {
-    std::swap(u, direction);
-  }
-  options.continuation = said.continuation == scene::Continuation::natural ? statics::Continuation::natural
-                                                                           : statics::Continuation::arc_length;
-  options.equilibrium = {.tolerance = scene_.solver.tolerance, .substructures = built_.solid_linear};
-  sweep_.emplace(*built_.model, std::move(u), std::move(direction), options);
-}
-
-double StaticsRun::last_load() const { return scene_.statics->control ? *scene_.statics->to : 1.0; }
-
-void StaticsRun::record(const statics::SweepPoint& point) {
+void EquilibriumRows::write(const statics::SweepPoint& point) {
   const std::span<const double> x(point.state.x.data(), static_cast<std::size_t>(point.state.x.size()));
   built_.model->energies({.x = x, .q = point.q, .v = zero_q_, .u = point.u}, parts_);
   constraint_force_ = -point.force;
@@ -60,14 +53,34 @@ void StaticsRun::record(const statics::SweepPoint& point) {
                              .multipliers = point.state.multipliers,
                              .y = point.y,
                              .u = point.u};
+  least_stretched_.clear();
+  model::NodeView look = view;
+  look.serial = looks_--;  // below those of the records
+  for (const model::Observable& observable : built_.model->observables) {
+    if (!observable.path.starts_with("muscles/") || !observable.path.ends_with("/stretch")) continue;
+    double stretch = 0.0;
+    observable.evaluate(look, {&stretch, 1});
+    if (!least_stretched_.empty() && stretch >= least_stretch_) continue;
+    least_stretch_ = stretch;
+    least_stretched_ = observable.path.substr(8, observable.path.size() - 16);
+  }
   rows_.write({.load = point.load,
                .stable = point.report.stability == statics::Stability::stable,
                .iterations = point.report.iterations,
                .residual = point.report.residual,
                .violation = built_.manifold->violation(point.q),
                .parts = parts_,
-               .last = point.load == last_load()},
+               .last = point.load == last_load_},
               view);
+}
+
+StaticsRun::StaticsRun(const scene::Scene& scene, const build::BuiltModel& built, results::Recorder& recorder)
+    : scene_(scene), built_(built), recorder_(recorder), rows_(recorder, scene, built) {}
+
+void StaticsRun::prepare() {
+  state_ = starting_point(scene_, built_);
+  StaticLoads loads = static_loads(scene_, built_);
+  sweep_.emplace(*built_.model, std::move(loads.fixed), std::move(loads.direction), loads.options);
 }
 
 void StaticsRun::report_critical(const std::vector<statics::CriticalPoint>& points, const RunContext& context) {
@@ -87,12 +100,41 @@ void StaticsRun::report_critical(const std::vector<statics::CriticalPoint>& poin
   }
 }
 
+void StaticsRun::report_changes(const std::vector<statics::BranchChange>& changes, const RunContext& context) {
+  int number = 0;
+  for (const statics::BranchChange& change : changes) {
+    const std::string count = ++number == 1 ? "" : "_" + std::to_string(number);
+    recorder_.set_attribute("statics", "jump_load_before" + count, change.before);
+    recorder_.set_attribute("statics", "jump_load_after" + count, change.after);
+    if (!context.warn) continue;
+    context.warn(
+        base::format("statics: between the loads {:.10g} and {:.10g} the equilibrium {}; continuation: arc_length "
+                     "follows the branch that it leaves",
+                     change.before, change.after,
+                     change.jumps ? "jumps to another branch (snap-through)" : "goes over to another branch"));
+  }
+}
+
+std::string StaticsRun::loss_sentence(const statics::SweepResult& result) const {
+  std::string text = result.sentence;
+  if (scene_.statics->control) {
+    const auto index = static_cast<std::size_t>(scene_.controls.index(scene_.statics->control->name));
+    text = base::format("the equilibrium is lost with control '{}' between {:.10g} and {:.10g} {}",
+                        scene_.statics->control->name, result.last_good, result.first_bad,
+                        scene_.units.unit_name(built_.model->controls[index].unit));
+  }
+  if (!rows_.least_stretched().empty()) {
+    text += base::format("; there muscle '{}' is at stretch {:.4g}", rows_.least_stretched(), rows_.least_stretch());
+  }
+  return text;
+}
+
 Outcome StaticsRun::run(RunContext& context) {
   const scene::Statics& said = *scene_.statics;
   long row = 0;
   const statics::SweepResult result = sweep_->run(state_, {.record =
                                                                [&](const statics::SweepPoint& point) {
-                                                                 record(point);
+                                                                 rows_.write(point);
                                                                  if (context.progress) {
                                                                    context.progress(row++, said.steps, point.load);
                                                                  }
@@ -104,11 +146,15 @@ Outcome StaticsRun::run(RunContext& context) {
     recorder_.set_attribute("statics", "critical_load_below", result.first_bad);
   }
   report_critical(result.critical, context);
+  report_changes(result.changes, context);
   const auto status = result.end == End::completed             ? variational::Status::completed
                       : result.end == End::interrupted         ? variational::Status::interrupted
                       : result.end == End::loss_of_equilibrium ? variational::Status::loss_of_equilibrium
                                                                : variational::Status::no_convergence;
-  return {.status = status, .sentence = result.sentence, .time = std::numeric_limits<double>::quiet_NaN()};
+  const bool lost = result.end == End::loss_of_equilibrium && result.last_good != result.first_bad;
+  return {.status = status,
+          .sentence = lost ? loss_sentence(result) : result.sentence,
+          .time = std::numeric_limits<double>::quiet_NaN()};
 }
 
 }  // namespace muldi::pipeline

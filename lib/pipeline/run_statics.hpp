@@ -10,6 +10,37 @@
 
 namespace muldi::pipeline {
 
+/// The controls along the curve of a scene, u = fixed + load direction, and how it is followed.
+struct StaticLoads {
+  std::vector<double> fixed;
+  std::vector<double> direction;
+  statics::SweepOptions options;
+};
+StaticLoads static_loads(const scene::Scene& scene, const build::BuiltModel& built);
+
+/// Equilibria as rows of the group /statics.
+class EquilibriumRows {
+ public:
+  EquilibriumRows(results::Recorder& recorder, const scene::Scene& scene, const build::BuiltModel& built);
+  void write(const statics::SweepPoint& point);
+
+  /// The muscle that is shortest for its rest length at the last row, empty without muscles, and its stretch.
+  const std::string& least_stretched() const { return least_stretched_; }
+  double least_stretch() const { return least_stretch_; }
+
+ private:
+  const build::BuiltModel& built_;
+  double last_load_;
+  NodeRows rows_;
+  std::vector<model::Energy> parts_;
+  long looks_ = -2;
+  double least_stretch_ = 0.0;
+  std::string least_stretched_;
+  Eigen::VectorXd zero_q_;
+  Eigen::VectorXd zero_v_;
+  Eigen::VectorXd constraint_force_;
+};
+
 class StaticsRun {
  public:
   StaticsRun(const scene::Scene& scene, const build::BuiltModel& built, results::Recorder& recorder);
@@ -20,22 +51,18 @@ class StaticsRun {
   Outcome run(RunContext& context);
 
  private:
-  void record(const statics::SweepPoint& point);
-  void make_sweep();
-  double last_load() const;
+  /// Where the equilibrium was lost, as the user speaks of it.
+  std::string loss_sentence(const statics::SweepResult& result) const;
   /// Limit points and branches that the arc length has passed: attributes and messages.
+  void report_changes(const std::vector<statics::BranchChange>& changes, const RunContext& context);
   void report_critical(const std::vector<statics::CriticalPoint>& points, const RunContext& context);
 
   const scene::Scene& scene_;
   const build::BuiltModel& built_;
   results::Recorder& recorder_;
-  NodeRows rows_;
+  EquilibriumRows rows_;
   std::optional<statics::Sweep> sweep_;
   statics::StaticState state_;
-  std::vector<model::Energy> parts_;
-  Eigen::VectorXd zero_q_;
-  Eigen::VectorXd zero_v_;
-  Eigen::VectorXd constraint_force_;
 };
 
 }  // namespace muldi::pipeline

@@ -1,5 +1,6 @@
 #pragma once
 /// Comparison of two result files: physics, not run metadata.
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,11 +34,21 @@ struct Difference {
   std::size_t count = 0;                ///< values beyond their tolerance
 };
 
+/// How the two motions leave each other, where that is exponential over many orders of magnitude: chaos.
+struct Divergence {
+  std::string path = {};      ///< the data set that shows it most clearly, with its leading slash
+  std::string unit = {};      ///< of the time
+  double rate = 0.0;          ///< of growth, in 1/unit
+  double first_time = 0.0;    ///< first difference above round-off
+  double visible_time = 0.0;  ///< where the difference passes a thousandth of the largest value
+};
+
 /// Result of a comparison: differences sorted, the worst first; all but values count as worst.
 struct Comparison {
   std::string first_file = {};
   std::string second_file = {};
   std::vector<Difference> differences = {};
+  std::optional<Divergence> divergence = {};
   std::size_t n_data_sets = 0;  ///< compared
   std::size_t n_values = 0;     ///< compared
   bool same() const { return differences.empty(); }

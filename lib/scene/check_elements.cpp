@@ -19,7 +19,6 @@ struct NeedsInput {
   void operator()(const base::Choice& choice, const Value&) {
     any = any || choice.need == base::Need::required;
   }
-  void operator()(const base::Later&) const {}
 };
 
 std::vector<ControlQuantity> quantities_of(std::span<const std::string_view> known) {

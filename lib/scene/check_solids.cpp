@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/text.hpp"
+#include "scene/input_file.hpp"
 
 namespace muldi::scene {
 namespace {
@@ -41,6 +42,10 @@ void SolidCheck::check_mesh(const Entry<Solid>& solid) {
   if (context_.failed(solid.origin.path + ".mesh")) return;
   const std::string why = std::visit([](const auto& mesh) { return mesh.why_invalid(); }, solid.value.mesh);
   if (!why.empty()) check_.error({"solids", solid.name, "mesh"}, why);
+  const auto* file = std::get_if<fem::MeshFile>(&solid.value.mesh);
+  if (file == nullptr || context_.failed(solid.origin.path + ".mesh.file")) return;
+  const std::string outside = why_not_in_folder(file->path);
+  if (!outside.empty()) check_.error({"solids", solid.name, "mesh", "file"}, outside);
 }
 
 void SolidCheck::check_parts(const Entry<Solid>& solid) {

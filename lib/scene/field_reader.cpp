@@ -32,15 +32,6 @@ const Node* FieldReader::take(std::string_view key, bool required) {
   return nullptr;
 }
 
-void FieldReader::operator()(const base::Later& later) {
-  for (std::size_t i = 0; i < map_.entries.size(); ++i) {
-    if (map_.entries[i].key != later.key) continue;
-    taken_[i] = true;
-    const ReadContext::Scope scope(context_, later.key);
-    report_later(context_, map_.entries[i].mark, later.doc);
-  }
-}
-
 void FieldReader::finish() {
   std::vector<std::string> candidates;  // keys that could have been meant: those that do not stand here already
   for (const std::string& key : known_) {

@@ -22,7 +22,6 @@ class FieldReader {
   void operator()(const CoordinateField& field, T& values);
   template <class... Components>
   void operator()(const base::Choice& choice, std::variant<Components...>& value);
-  void operator()(const base::Later& later);
 
   /// Reports unknown and missing keys; call it after the visit.
   void finish();

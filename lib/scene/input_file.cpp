@@ -6,6 +6,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "base/text.hpp"
 #include "scene/yaml.hpp"
 
 namespace muldi::scene {
@@ -23,6 +24,25 @@ InputFile read_input_file(const std::string& path) {
   text.resize(static_cast<std::size_t>(file.gcount()));
   if (text.size() > largest_input) return {.text = {}, .error = too_large(text.size())};
   return {.text = std::move(text), .error = {}};
+}
+
+InputFile read_named_file(const std::string& path) {
+  std::error_code code;
+  if (std::filesystem::exists(path, code) && !std::filesystem::is_regular_file(path, code) &&
+      !std::filesystem::is_directory(path, code))
+    return {.text = {}, .error = "it is a device or a pipe"};
+  return read_input_file(path);
+}
+
+std::string why_not_in_folder(std::string_view file) {
+  if (file.empty()) return "needs the name of a file";
+  if (file.front() == '/') return "needs a path from the scene's folder, got " + base::in_quotes(file);
+  for (std::string_view rest = file; !rest.empty();) {
+    const std::size_t slash = rest.find('/');
+    if (rest.substr(0, slash) == "..") return "must stay in the scene's folder, got " + base::in_quotes(file);
+    rest.remove_prefix(slash == rest.npos ? rest.size() : slash + 1);
+  }
+  return {};
 }
 
 }  // namespace muldi::scene

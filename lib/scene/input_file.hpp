@@ -1,6 +1,7 @@
 #pragma once
 /// Text files of bounded size.
 #include <string>
+#include <string_view>
 
 namespace muldi::scene {
 
@@ -12,5 +13,11 @@ struct InputFile {
 
 /// Reads a whole file; files larger than `largest_input` are refused unread.
 InputFile read_input_file(const std::string& path);
+
+/// The same of a file that a scene names: devices and pipes, which may never end, are refused unopened.
+InputFile read_named_file(const std::string& path);
+
+/// Why a scene may not name this file, empty if it may: scenes of strangers read nothing outside their own folder.
+std::string why_not_in_folder(std::string_view file);
 
 }  // namespace muldi::scene

@@ -1,49 +1,14 @@
 #include "scene/overrides.hpp"
 
-#include <charconv>
 #include <optional>
 #include <utility>
 
 #include "base/text.hpp"
+#include "scene/key_path.hpp"
 #include "scene/yaml.hpp"
 
 namespace muldi::scene {
 namespace {
-
-/// `.key` or `[index]`.
-struct Step {
-  std::string key;
-  std::size_t index = 0;
-  bool is_index = false;
-};
-
-/// The steps of `a.b[2].c`; nothing if it is no path.
-std::optional<std::vector<Step>> parse_path(std::string_view path) {
-  std::vector<Step> steps;
-  while (!path.empty()) {
-    if (path.front() == '[') {
-      Step step{.key = {}, .index = 0, .is_index = true};
-      const std::size_t end = path.find(']');
-      if (end == path.npos || steps.empty()) return {};
-      const auto [stop, error] = std::from_chars(path.data() + 1, path.data() + end, step.index);
-      if (error != std::errc() || stop != path.data() + end) return {};
-      steps.push_back(std::move(step));
-      path.remove_prefix(end + 1);
-      if (!path.empty() && path.front() != '.' && path.front() != '[') return {};
-    } else {
-      if (path.front() == '.') {
-        if (steps.empty()) return {};
-        path.remove_prefix(1);
-      }
-      const std::string_view key = path.substr(0, path.find_first_of(".["));
-      if (key.empty()) return {};
-      steps.push_back({.key = std::string(key), .index = 0, .is_index = false});
-      path.remove_prefix(key.size());
-    }
-  }
-  if (steps.empty()) return {};
-  return steps;
-}
 
 void mark_all(Node& node, const Mark& mark) {
   node.mark = mark;
@@ -55,7 +20,7 @@ void mark_all(Node& node, const Mark& mark) {
 }
 
 /// The child of `node` that the step names, made if it is a key; null and a message if there cannot be one.
-Node* child(Node& node, const Step& step, const Mark& mark, std::string& message) {
+Node* child(Node& node, const KeyStep& step, const Mark& mark, std::string& message) {
   if (step.is_index) {
     if (!node.is_sequence()) {
       message = "needs a list, but there is " + shown(node);
@@ -88,7 +53,7 @@ std::string override_name(std::string_view override) { return "--set " + std::st
 void apply_override(Node& root, const std::string& override, int source, std::vector<base::Diagnostic>& diagnostics) {
   const base::Place place{.file = override_name(override), .line = 0, .column = 0};
   const std::size_t equals = override.find('=');
-  const auto steps = parse_path(base::trimmed(std::string_view(override).substr(0, equals)));
+  const auto steps = parse_key_path(base::trimmed(std::string_view(override).substr(0, equals)));
   if (equals == override.npos || !steps) {
     diagnostics.push_back(
         {.place = place, .message = "needs path=value, such as dynamics.step=1 or loads.push.force[2]=3"});
@@ -109,7 +74,7 @@ void apply_override(Node& root, const std::string& override, int source, std::ve
   Node edited = root;  // a path that leads nowhere must leave no trace
   Node* node = &edited;
   std::string path;
-  for (const Step& step : *steps) {
+  for (const KeyStep& step : *steps) {
     std::string message;
     Node* next = child(*node, step, mark, message);
     if (next == nullptr) {

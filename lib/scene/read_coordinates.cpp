@@ -124,6 +124,13 @@ bool find_coordinates(ReadContext& context, Entry<T>& entry) {
   return !context.failed(joint->origin.path + ".type");
 }
 
+/// The values of an entry that knows its joint's coordinates; `describe` makes the field of all of them.
+template <class Describe, class T>
+bool read_values(ReadContext& context, const Node& node, Describe describe, const base::Field& field, T& value) {
+  read_all(context, node, describe(field.doc, value.coordinates), value.values);
+  return true;
+}
+
 }  // namespace
 
 void read_coordinates(ReadContext& context, const Node& node, const CoordinateField& field,
@@ -149,28 +156,19 @@ bool prepare(ReadContext& context, Entry<JointTrajectory>& entry) { return find_
 bool prepare(ReadContext& context, Entry<JointMomentum>& momentum) { return find_coordinates(context, momentum); }
 
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, JointMomentum& value) {
-  read_all(context, node, momentum_field(field.doc, value.coordinates), value.values);
-  return true;
+  return read_values(context, node, momentum_field, field, value);
 }
-
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, JointPosition& value) {
-  read_all(context, node, position_field(field.doc, value.coordinates), value.values);
-  return true;
+  return read_values(context, node, position_field, field, value);
 }
-
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, JointVelocity& value) {
-  read_all(context, node, velocity_field(field.doc, value.coordinates), value.values);
-  return true;
+  return read_values(context, node, velocity_field, field, value);
 }
-
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, JointRange& value) {
-  read_all(context, node, position_field(field.doc, value.coordinates), value.values);
-  return true;
+  return read_values(context, node, position_field, field, value);
 }
-
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, JointTrajectory& value) {
-  read_all(context, node, position_field(field.doc, value.coordinates), value.values);
-  return true;
+  return read_values(context, node, position_field, field, value);
 }
 
 }  // namespace muldi::scene

@@ -92,14 +92,10 @@ bool read_value(ReadContext& context, const Node& node, const base::Field&, Init
 }
 
 bool read_value(ReadContext& context, const Node& node, const base::Field&, Control& value) {
-  std::vector<std::string> usable;
   std::vector<std::string> known;
-  for (const auto& word : words(ControlQuantity{})) {
-    known.emplace_back(word.word);
-    if (!word.later) usable.emplace_back(word.word);
-  }
+  for (const auto& word : words(ControlQuantity{})) known.emplace_back(word.word);
   if (!node.is_map() || node.entries.size() != 1) {
-    context.error(node.mark, "needs {<quantity>: function of time} with one quantity of " + base::joined(usable) +
+    context.error(node.mark, "needs {<quantity>: function of time} with one quantity of " + base::joined(known) +
                                  ", got " +
                                  (node.is_map() ? std::to_string(node.entries.size()) + " keys" : shown(node)));
     return false;
@@ -108,14 +104,10 @@ bool read_value(ReadContext& context, const Node& node, const base::Field&, Cont
   const ReadContext::Scope scope(context, entry.key);
   const auto found = std::find(known.begin(), known.end(), entry.key);
   if (found == known.end()) {
-    context.error(entry.mark, "no quantity of a control" + base::did_you_mean(entry.key, usable));
+    context.error(entry.mark, "no quantity of a control" + base::did_you_mean(entry.key, known));
     return false;
   }
   const auto& word = words(ControlQuantity{})[static_cast<std::size_t>(found - known.begin())];
-  if (word.later) {
-    report_later(context, entry.mark, "controls of " + std::string(word.word) + " (" + std::string(word.doc) + ")");
-    return false;
-  }
   value.quantity = word.value;
   const base::Field field{.key = word.word, .doc = word.doc, .unit = dimension_of(word.value)};
   return read_value(context, entry.value, field, value.value);

@@ -93,17 +93,6 @@ bool read_expression(ReadContext& context, const Node& node, const base::Field& 
   return true;
 }
 
-/// Why a scene may not name this file; empty if it may.
-std::string why_outside(const std::string& file) {
-  if (file.front() == '/') return "needs a path from the scene's folder, got " + base::in_quotes(file);
-  for (std::string_view rest = file; !rest.empty();) {
-    const std::size_t slash = rest.find('/');
-    if (rest.substr(0, slash) == "..") return "must stay in the scene's folder, got " + base::in_quotes(file);
-    rest.remove_prefix(slash == rest.npos ? rest.size() : slash + 1);
-  }
-  return {};
-}
-
 bool read_file(ReadContext& context, const Node& node, const base::Field& field, TimeFunction& value) {
   FileForm form;
   base::Unit unit;
@@ -115,9 +104,9 @@ bool read_file(ReadContext& context, const Node& node, const base::Field& field,
     context.error(mark, std::move(message));
     return false;
   };
-  if (std::string why = why_outside(form.file); !why.empty()) return refuse(std::move(why));
+  if (std::string why = why_not_in_folder(form.file); !why.empty()) return refuse(std::move(why));
   const std::string path = path_of_file(context.scene(), form.file);
-  const InputFile file = read_input_file(path);
+  const InputFile file = read_named_file(path);
   if (!file.error.empty()) return refuse("cannot read " + base::in_quotes(path) + ": " + file.error);
   CsvColumns columns = read_csv(file.text, form.column);
   const auto refuse_line = [&](int line, std::string message) {

@@ -143,8 +143,4 @@ bool check_name(ReadContext& context, const Mark& mark, const std::string& name)
   return false;
 }
 
-void report_later(ReadContext& context, const Mark& mark, std::string_view doc) {
-  context.error(mark, "this version of muldi-sim does not have " + std::string(doc));
-}
-
 }  // namespace muldi::scene

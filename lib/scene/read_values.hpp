@@ -28,7 +28,6 @@ std::optional<std::size_t> read_component_name(ReadContext& context, const Node&
                                                const std::vector<std::string>& names);
 /// Whether `name` may name an entry; an error if not.
 bool check_name(ReadContext& context, const Mark& mark, const std::string& name);
-void report_later(ReadContext& context, const Mark& mark, std::string_view doc);
 
 // Values of scenes (read_scene_values.cpp, read_time_function.cpp, read_coordinates.cpp, read_optimal_control.cpp).
 bool read_value(ReadContext& context, const Node& node, const base::Field& field, Mat3& value);
@@ -134,10 +133,8 @@ bool read_value(ReadContext& context, const Node& node, const base::Field&, T& v
   for (const base::Word<T>& word : words(T{})) known.emplace_back(word.word);
   const std::optional<std::size_t> i = read_word(context, node, known);
   if (!i) return false;
-  const base::Word<T>& word = words(T{})[*i];
-  if (word.later) report_later(context, node.mark, word.doc);
-  value = word.value;
-  return !word.later;
+  value = words(T{})[*i].value;
+  return true;
 }
 
 template <Family family>

@@ -130,8 +130,6 @@ class SchemaVisitor {
     (add_component<Components>(choice.key, needed || Components::name != names[0]), ...);
   }
 
-  void operator()(const base::Later&) {}
-
   Node object() {
     Node node = typed("object").with("additionalProperties", raw("false")).with("properties", std::move(properties_));
     if (!required_.items.empty()) node.with("required", std::move(required_));
@@ -211,9 +209,7 @@ Node schema_of(Tag<Named<T>>, const base::Field& field) {
 template <class T>
 requires std::is_enum_v<T> Node schema_of(Tag<T>, const base::Field&) {
   std::vector<std::pair<std::string_view, std::string_view>> known;
-  for (const base::Word<T>& word : words(T{})) {
-    if (!word.later) known.emplace_back(word.word, word.doc);
-  }
+  for (const base::Word<T>& word : words(T{})) known.emplace_back(word.word, word.doc);
   return choices(known);
 }
 
@@ -309,7 +305,6 @@ Node schema_of(Tag<InitialFrom>, const base::Field&) {
 Node schema_of(Tag<Control>, const base::Field& field) {
   Node properties = Node::map();
   for (const auto& word : words(ControlQuantity{})) {
-    if (word.later) continue;
     Node function = Node::map()
                         .with("description", text(word.doc))
                         .with("allOf", Node::sequence({schema_of(Tag<base::TimeFunction>{}, field)}))

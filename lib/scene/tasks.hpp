@@ -116,7 +116,20 @@ struct Record {
   friend bool operator==(const Record&, const Record&) = default;
 };
 
-enum class LinearSolver { automatic, dense, tree, bordered, direct, iterative, ldlt, cg, minres, gmres };
+enum class LinearSolver {
+  automatic,
+  dense,
+  tree,
+  bordered,
+  direct,
+  iterative,
+  ldlt,
+  cholmod,
+  umfpack,
+  cg,
+  minres,
+  gmres
+};
 
 /// True for solvers of solids, which systems of bodies do not know.
 constexpr bool is_of_solids(LinearSolver linear) { return linear >= LinearSolver::iterative; }
@@ -132,6 +145,12 @@ inline std::span<const base::Word<LinearSolver>> words(LinearSolver) {
       {.word = "direct", .value = LinearSolver::direct, .doc = "factorised matrices, of solids of any size too"},
       {.word = "iterative", .value = LinearSolver::iterative, .doc = "solids by iteration, whatever their size"},
       {.word = "ldlt", .value = LinearSolver::ldlt, .doc = "solids by a kept multifrontal factor L S L^T"},
+      {.word = "cholmod",
+       .value = LinearSolver::cholmod,
+       .doc = "solids by SuiteSparse's L L^T, or L D L^T where the matrix is not definite"},
+      {.word = "umfpack",
+       .value = LinearSolver::umfpack,
+       .doc = "solids by SuiteSparse's L U with pivoting, slow but hard to fail"},
       {.word = "cg", .value = LinearSolver::cg, .doc = "solids by conjugate gradients, where the matrix is definite"},
       {.word = "minres", .value = LinearSolver::minres, .doc = "solids by MINRES"},
       {.word = "gmres", .value = LinearSolver::gmres, .doc = "solids by flexible GMRES"},

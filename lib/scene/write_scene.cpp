@@ -166,7 +166,6 @@ class FieldWriter {
         },
         value);
   }
-  void operator()(const base::Later&) {}
 
  private:
   template <class T>

@@ -95,7 +95,7 @@ bool ArcLength::correct(const Plane& plane, CurvePoint& at) {
 
 bool ArcLength::advance(const CurvePoint& from, double arc, CurvePoint& to) {
   to.state = from.state;
-  solver_.move(from.state, arc, from.tangent, to.state);
+  solver_.swing(from.state, arc, from.tangent, to.state);
   to.load = from.load + arc * range_ * from.load_tangent;
   if (!correct({from, from.tangent, from.load_tangent, arc}, to)) return false;
   find_tangent(1.0, &from, to);
@@ -105,7 +105,7 @@ bool ArcLength::advance(const CurvePoint& from, double arc, CurvePoint& to) {
 bool ArcLength::move_to(double load, CurvePoint& point) {
   const CurvePoint from = point;
   const double arc = (load - from.load) / range_;
-  solver_.move(from.state, arc / from.load_tangent, from.tangent, point.state);
+  solver_.swing(from.state, arc / from.load_tangent, from.tangent, point.state);
   point.load = load;
   StaticMotion none = from.tangent;
   for (Eigen::VectorXd* part : {&none.w, &none.multipliers, &none.q, &none.y}) part->setZero();
@@ -130,8 +130,12 @@ bool ArcLength::locate_limit(const CurvePoint& a, const CurvePoint& b, double ar
   CurvePoint trial;
   int side = 0;
   for (int k = 0; k < most_trials; ++k) {
-    const double s = (low * at_high - high * at_low) / (at_high - at_low);
-    if (!advance(a, s, trial)) return false;
+    double s = (low * at_high - high * at_low) / (at_high - at_low);
+    while (!advance(a, s, trial)) {
+      // On a long step the corrector may fail where it succeeds closer by.
+      s = 0.5 * (low + s);
+      if (s - low < critical_accuracy) return false;
+    }
     found = {.kind = CriticalPoint::Kind::limit, .load = trial.load};
     const double value = trial.load_tangent;
     if (std::abs(value) * (high - low) < critical_accuracy) return true;

@@ -11,9 +11,11 @@ namespace {
 constexpr double longest_increment = 0.5;     // dimensionless: rad, or sizes of the scene
 constexpr double longest_displacement = 0.1;  // of a substructure, in its sizes: nodes close to each other move by it
 constexpr int max_halvings = 30;
+constexpr int most_probes = 40;           // increments beyond a failure, to see what they lead to
 constexpr double line_search_goal = 0.9;  // |work of the residual along the increment| relative to the start
 constexpr double free_motion = 1e-11;     // smallest over largest eigenvalue of a motion without stiffness
 constexpr double round_off_residual = 1e-12;
+constexpr double no_load = 1e-6;  // relative residual of an equilibrium where only round-off acts
 
 /// Columns that span the motions which the loop rows allow.
 Eigen::MatrixXd admissible_motions(const Eigen::MatrixXd& B, Eigen::Index n_v) {
@@ -47,7 +49,7 @@ EquilibriumSolver::EquilibriumSolver(const model::Model& model, EquilibriumOptio
   forces_.momentum = q_;
   forces_.on_rates = r_;
   if (parts_.empty()) return;
-  forces_.begin = forces_.end = step_.q = q_;
+  forces_.begin = forces_.end = step_.q = before_ = excess_ = q_;
   forces_.stage = y_ = step_.y = Eigen::VectorXd::Zero(model.n_y());
 }
 
@@ -172,10 +174,10 @@ double EquilibriumSolver::predict(StaticState& state, std::span<const double> u)
   parts_.eliminate(bracket_, forces_.stage, K_);
   manifold_.project(*frame_, bracket_, r_);
   newton_increment();
-  const double size = parts_.size_of(step_.q, step_.y).largest();
+  const double size = std::max(parts_.deformation(q_, step_.q), parts_.size_of(step_.q, step_.y).stage);
   if (!(size <= longest_increment)) return size;
   StaticState moved = state;
-  move(state, 1.0, step_, moved);
+  swing(state, 1.0, step_, moved);
   state = std::move(moved);
   return size;
 }
@@ -218,7 +220,21 @@ EquilibriumReport EquilibriumSolver::solve(StaticState& state, std::span<const d
   shortened_by_.clear();
   EquilibriumReport report = iterate(state, u);
   if (!report.converged && report.inadmissible.empty()) report.inadmissible = shortened_by_;
+  if (!report.converged && report.inadmissible.empty()) report.inadmissible = limit_of_increment();
   return report;
+}
+
+std::string EquilibriumSolver::limit_of_increment() {
+  if (parts_.empty() || !step_.q.allFinite()) return {};
+  const double length = length_of(step_);
+  if (!(length > 0.0)) return {};
+  // Along the last increment, in steps that are taken whole, until something gives way.
+  for (int k = 1; k <= most_probes; ++k) {
+    q_ += step_.q / length;
+    const std::string found = model_.inadmissible_anywhere(q_);
+    if (!found.empty()) return "the forces move on until " + found;
+  }
+  return {};
 }
 
 EquilibriumReport EquilibriumSolver::iterate(StaticState& state, std::span<const double> u) {
@@ -247,15 +263,17 @@ EquilibriumReport EquilibriumSolver::iterate(StaticState& state, std::span<const
     measure_residual();
     report.residual = residual_;
     const bool stagnates = report.iterations > 3 && size > 0.5 * previous && report.residual < round_off_residual;
+    previous = size;
     if (size <= options_.tolerance || stagnates) {
       report.converged = true;
       break;
     }
-    previous = size;
   }
   if (!report.converged) return report;
   linearise(at, u);
   report.stability = stability();
+  // Where no load acts all forces are round-off, and so is their ratio: the increment says how far the state is off.
+  if (report.residual > no_load) report.residual = std::min(report.residual, previous);
   settle(at);
   state = at;
   return report;

@@ -49,7 +49,7 @@ struct EquilibriumReport {
   Stability stability = Stability::stable;
   int iterations = 0;
   double residual = 0.0;     ///< relative
-  std::string inadmissible;  ///< why the terms could not be evaluated: collapsed muscle, inverted cell
+  std::string inadmissible;  ///< why the terms could not be evaluated, or what limits: collapsed muscle, inverted cell
 };
 
 class EquilibriumSolver {
@@ -83,6 +83,8 @@ class EquilibriumSolver {
   /// Largest entry of a motion in natural sizes; those of the stage unknowns and of prescribed ones count.
   double size_of(const StaticMotion& motion) const;
   void move(const StaticState& start, double factor, const StaticMotion& along, StaticState& trial) const;
+  /// The same for predictions, which may be long: tied substructures swing with their bodies, however far these turn.
+  void swing(const StaticState& start, double factor, const StaticMotion& along, StaticState& trial);
   /// b - a, of rates and substructures.
   StaticMotion difference(const StaticState& a, const StaticState& b) const;
   /// Gives a linearised equilibrium the values that are prescribed, and multipliers of least norm.
@@ -95,7 +97,7 @@ class EquilibriumSolver {
   double relative_residual() const { return residual_; }
   Stability stability() const;
   /// For models with substructures, after linearise() at an equilibrium: moves `state` along the tangent to the
-  /// controls u; returns the largest increment of the substructures.
+  /// controls u; returns the largest increment of the substructures, less their swing with the bodies.
   double predict(StaticState& state, std::span<const double> u);
   /// Largest difference of the substructures' unknowns of two states, in natural sizes; 0 without substructures.
   double distance(const StaticState& a, const StaticState& b);
@@ -111,6 +113,8 @@ class EquilibriumSolver {
   void scale_increment(double factor);
   void measure_residual();
   EquilibriumReport iterate(StaticState& state, std::span<const double> u);
+  /// After a failure without a reason: what becomes inadmissible further along the last increment; changes q_.
+  std::string limit_of_increment();
   double line_search(const StaticState& start, StaticState& trial, std::span<const double> u,
                      std::string& inadmissible);
 
@@ -122,6 +126,8 @@ class EquilibriumSolver {
   math::BlockMatrix K_;
   model::IntervalForces forces_;
   Eigen::VectorXd q_;
+  Eigen::VectorXd before_;  // of a motion of finite size
+  Eigen::VectorXd excess_;
   Eigen::VectorXd zero_;
   Eigen::VectorXd force_;
   Eigen::VectorXd bracket_;

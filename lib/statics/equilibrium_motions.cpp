@@ -83,6 +83,17 @@ void EquilibriumSolver::move(const StaticState& start, double factor, const Stat
   trial.y = start.y + factor * along.y;
 }
 
+void EquilibriumSolver::swing(const StaticState& start, double factor, const StaticMotion& along, StaticState& trial) {
+  move(start, factor, along, trial);
+  if (parts_.empty()) return;
+  // Where the bodies go beyond the first order.
+  manifold_.configuration(start.x, before_);
+  parts_.copy_slices(start.q, before_);
+  manifold_.configuration(trial.x, excess_);
+  excess_ -= before_ + factor * along.q;
+  parts_.carry(before_, excess_, trial.q);
+}
+
 StaticMotion EquilibriumSolver::difference(const StaticState& a, const StaticState& b) const {
   StaticMotion motion{.w = Eigen::VectorXd::Zero(manifold_.n_v()), .multipliers = b.multipliers - a.multipliers};
   manifold_.difference(a.x, b.x, motion.w);

@@ -66,7 +66,8 @@ bool Sweep::first_equilibrium(StaticState& state, EquilibriumReport& report, Swe
         "equilibrium";
   } else {
     result.end = SweepResult::End::loss_of_equilibrium;
-    result.sentence = report.inadmissible.empty() ? "no stable equilibrium at the first load" : report.inadmissible;
+    result.sentence = "no stable equilibrium at the first load";
+    if (!report.inadmissible.empty()) result.sentence += ": " + report.inadmissible;
   }
   result.last_good = options_.from;
   result.first_bad = options_.from;
@@ -77,7 +78,7 @@ SweepResult Sweep::run(StaticState& state, const SweepCallbacks& callbacks) {
   return options_.continuation == Continuation::natural ? natural(state, callbacks) : arc_length(state, callbacks);
 }
 
-bool Sweep::follow(double load, double next, StaticState& state, EquilibriumReport& report) {
+FollowedStep Sweep::follow(double load, double next, StaticState& state, EquilibriumReport& report) {
   const double range = options_.to - options_.from;
   const bool resolved = std::abs(next - load) <= bracket_width * std::abs(range);
   Eigen::VectorXd moved(model_.manifold->n_v());
@@ -90,15 +91,17 @@ bool Sweep::follow(double load, double next, StaticState& state, EquilibriumRepo
     controls_at(next);
     predicted_parts = solver_.predict(state, u_);
   }
-  if (predicted_parts > longest_prediction && !resolved) return false;
+  if (predicted_parts > longest_prediction && !resolved) return {};
   const StaticState guess = state;
   report = solve_at(next, state);
   model_.manifold->difference(start.x, state.x, moved);
   const double travelled = moved.cwiseQuotient(solver_.scale()).norm();
   const bool left =
       solver_.distance(state, guess) > largest_correction * std::max(predicted_parts, smallest_prediction);
-  const bool jumped = !resolved && (is_jump(travelled, predicted) || left);
-  return report.converged && report.stability == Stability::stable && !jumped;
+  const bool jumps = is_jump(travelled, predicted);
+  const bool leaves = jumps || left;
+  if (!report.converged || report.stability != Stability::stable || (leaves && !resolved)) return {};
+  return {.accepted = true, .leaves_branch = leaves, .jumps = jumps};
 }
 
 double Sweep::response_length() {
@@ -126,7 +129,8 @@ SweepResult Sweep::natural(StaticState& state, const SweepCallbacks& callbacks) 
       const bool last = std::abs(step) >= std::abs(goal - load);
       const double next = last ? goal : load + step;
       StaticState trial = state;
-      if (follow(load, next, trial, report)) {
+      if (const FollowedStep taken = follow(load, next, trial, report); taken.accepted) {
+        if (taken.leaves_branch) result.changes.push_back({.before = load, .after = next, .jumps = taken.jumps});
         state = trial;
         load = next;
         step = std::copysign(std::min(2.0 * std::abs(step), std::abs(range / options_.steps)), range);

@@ -29,6 +29,13 @@ struct SweepPoint {
   const EquilibriumReport& report;
 };
 
+/// Where load stepping left its branch: the last load on it, and the first on the other.
+struct BranchChange {
+  double before = 0.0;
+  double after = 0.0;
+  bool jumps = false;  ///< to a state far away (snap-through); otherwise another branch begins there
+};
+
 struct SweepResult {
   enum class End { completed, loss_of_equilibrium, no_convergence, free_motion, interrupted };
   End end = End::completed;
@@ -36,6 +43,14 @@ struct SweepResult {
   double last_good = 0.0;  ///< largest load with a stable equilibrium (natural), bracketing the critical one
   double first_bad = 0.0;  ///< with last_good: where the equilibrium is lost
   std::vector<CriticalPoint> critical = {};  ///< on the way of the arc length
+  std::vector<BranchChange> changes = {};    ///< on the way of load stepping
+};
+
+/// A step of load stepping that was tried.
+struct FollowedStep {
+  bool accepted = false;
+  bool leaves_branch = false;  ///< accepted, for it is as short as steps get
+  bool jumps = false;
 };
 
 struct SweepCallbacks {
@@ -53,9 +68,10 @@ class Sweep {
 
  private:
   SweepResult natural(StaticState& state, const SweepCallbacks& callbacks);
-  /// Moves an equilibrium at `load` to one at `next` on the same branch; false if there is none, it is not stable, or
-  /// it is too far from the predicted one to be of this branch.
-  bool follow(double load, double next, StaticState& state, EquilibriumReport& report);
+  /// Moves an equilibrium at `load` to one at `next` on the same branch. Not accepted if there is none, it is not
+  /// stable, or it is too far from the predicted one to be of this branch; the last counts only while steps can still
+  /// be halved.
+  FollowedStep follow(double load, double next, StaticState& state, EquilibriumReport& report);
   SweepResult arc_length(StaticState& state, const SweepCallbacks& callbacks);
   EquilibriumReport solve_at(double load, StaticState& state);
   bool first_equilibrium(StaticState& state, EquilibriumReport& report, SweepResult& result);

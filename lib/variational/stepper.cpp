@@ -4,8 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "base/mutation.hpp"
+
 namespace muldi::variational {
 namespace {
+
+using base::has;
+using base::Mutation;
 
 /// Longest dimensionless Newton increment that is taken whole (rad, or sizes of the scene).
 constexpr double longest_increment = 0.5;
@@ -13,6 +18,10 @@ constexpr double longest_increment = 0.5;
 constexpr int max_halvings = 12;
 /// Relative residual below which increments may stop falling: round-off of badly conditioned systems.
 constexpr double round_off_residual = 1e-12;
+/// The same of pressures, by increments of positions that are round-off and by those of the pressures themselves (over
+/// the shear modulus): the viscous stress by which a step resists the last bit of a position is eta/dt times as large.
+constexpr double round_off_positions = 1e-13;
+constexpr double round_off_pressures = 1e-8;
 /// A kept factor is made anew where an iteration reduces the increment by less than this.
 constexpr double slow_rate = 0.4;
 /// Accuracy of increments with exact derivatives: that of their own size, between these.
@@ -24,6 +33,8 @@ constexpr int exact_for_steps = 16;
 constexpr double violation_goal = 1e-12;
 /// Violation that is round-off already.
 constexpr double violation_round_off = 2e-13;
+/// Share of an interval's forces on the minimal rates that acts at either end.
+constexpr double share_of_an_end = has(Mutation::forces_without_half) ? 1.0 : 0.5;
 
 }  // namespace
 
@@ -84,8 +95,9 @@ void Stepper::evaluate(const State& state, std::span<const double> u) {
 }
 
 void Stepper::project_bracket() {
-  manifold_.project(*frame_n_, bracket_, r_);
-  r_ += 0.5 * dt_ * forces_.on_rates;
+  if constexpr (has(Mutation::null_space_at_end)) manifold_.update(x_, q_, *frame_k_);
+  manifold_.project(has(Mutation::null_space_at_end) ? *frame_k_ : *frame_n_, bracket_, r_);
+  r_ += share_of_an_end * dt_ * forces_.on_rates;
 }
 
 double Stepper::residual_of(const State& state) {
@@ -96,7 +108,7 @@ double Stepper::residual_of(const State& state) {
                 0.5 * dt_ * forces_.on_rates.lpNorm<Eigen::Infinity>(), forces_.momentum.lpNorm<Eigen::Infinity>()});
   const Eigen::MatrixXd& Z = manifold_.loop_basis(*frame_n_);
   lambda_.noalias() = Z * mu_;
-  manifold_.add_constraint_forces(state.q, -1.0, lambda_, bracket_);
+  manifold_.add_constraint_forces(has(Mutation::constraints_in_middle) ? q_mid_ : state.q, -1.0, lambda_, bracket_);
   parts_.gather(bracket_);
   project_bracket();
   manifold_.constraints(q_, gaps_);
@@ -228,7 +240,9 @@ bool Stepper::newton(const State& state, std::span<const double> u, bool keep_fa
     if (!std::isfinite(size)) return false;
     since_change = report.factorisations > factorisations ? 1 : since_change + 1;
     is_new |= report.factorisations > factorisations;
-    const bool stagnates = iteration > 3 && size > 0.5 * previous && report.residual < round_off_residual;
+    const bool in_last_bits = length_ <= round_off_positions && size <= round_off_pressures;
+    const bool stagnates =
+        iteration > 3 && size > 0.5 * previous && (report.residual < round_off_residual || in_last_bits);
     const bool slow = since_change > 1 && size > slow_rate * previous && size > options_.tolerance;
     if (!parts_.empty() && slow && !stagnates) {
       // What a new factor does not mend is not in its matrix.
@@ -342,7 +356,7 @@ void Stepper::finish(State& state, std::span<const double> u, StepReport& report
   const double weight = state.step == 0 ? 0.5 * dt_ : dt_;
   constraint_force_ = -(state.p + 0.5 * dt_ * forces_.force - forces_.momentum) / weight;
   if (forces_.begin.size() > 0) constraint_force_ -= forces_.begin / weight;
-  manifold_.add_forces_on_rates(*frame_n_, -0.5 * dt_ / weight, forces_.on_rates, constraint_force_);
+  manifold_.add_forces_on_rates(*frame_n_, -share_of_an_end * dt_ / weight, forces_.on_rates, constraint_force_);
   parts_.gather(constraint_force_);
   report.violation = forces_.violation;
   report.work = model_.work(point(state, u));
@@ -352,11 +366,12 @@ void Stepper::finish(State& state, std::span<const double> u, StepReport& report
   state.p = forces_.momentum + 0.5 * dt_ * forces_.force + bracket_;
   if (!forces_.on_rates.isZero(0.0)) {
     manifold_.update(x_, q_, *frame_k_);
-    manifold_.add_forces_on_rates(*frame_k_, 0.5 * dt_, forces_.on_rates, state.p);
+    manifold_.add_forces_on_rates(*frame_k_, share_of_an_end * dt_, forces_.on_rates, state.p);
   }
   if (forces_.end.size() > 0) state.p += forces_.end;
   if (!parts_.empty()) {
     state.advance = q_ - state.q;
+    if constexpr (has(Mutation::potentials_at_nodes)) y_ = 2.0 * y_ - state.y;
     state.y = y_;
     if (report.factorisations > 0 || !state.factor.valid) state.factor = factor_;
     // Tried without again now and then: the exact derivative costs many products.

@@ -87,6 +87,25 @@ RigidSystem slider_crank(double gravity) {
   return system;
 }
 
+RigidSystem quick_return(double gravity) {
+  RigidSystem system;
+  system.gravity = Vector3d(0.0, -gravity, 0.0);
+  system.length = 100.0;
+  const Vector3d pivot(0.0, -60.0, 0.0);
+  const Vector3d tip = 30.0 * Vector3d(std::cos(0.8), std::sin(0.8), 0.0);
+  const Vector3d along = (tip - pivot).normalized();
+  const int frame = system.add_body(500.0, Vector3d(1e5, 1e5, 1e5), {.position = 0.5 * pivot});
+  const int crank = add_bar(system, Vector3d::Zero(), tip);
+  const int block = system.add_body(10.0, Vector3d(800.0, 900.0, 1000.0), {.position = tip});
+  const int rocker = add_bar(system, pivot, pivot + 100.0 * along);
+  system.connect(multibody::Fixed::pattern, {ground, frame}, Vector3d::Zero());
+  system.connect(Revolute::pattern, {frame, crank}, Vector3d::Zero());
+  system.connect(Revolute::pattern, {crank, block}, tip);
+  system.connect(Revolute::pattern, {frame, rocker}, pivot);
+  system.connect(multibody::Prismatic::pattern, {rocker, block}, tip, math::triad_about(along));
+  return system;
+}
+
 RigidSystem bennett(double first_angle) {
   RigidSystem system;
   system.length = 100.0;

@@ -19,6 +19,10 @@ RigidSystem four_bar(const FourBar& form, double gravity);
 /// Crank, rod and slider: joints revolute, revolute, revolute and a prismatic one along x to ground.
 RigidSystem slider_crank(double gravity);
 
+/// A quick-return: a block on the tip of a crank slides along a rocker, both hinged on a frame that is fixed to ground;
+/// joint 4, the sliding one, closes the loop, and its rows turn with the rocker.
+RigidSystem quick_return(double gravity);
+
 /// Bennett's over-constrained spatial linkage: four revolutes, opposite links equal, sin(twist)/length equal for all.
 RigidSystem bennett(double first_angle);
 /// Coordinates (n_x) of the linkage bennett(scene_angle) where its first angle is another one.

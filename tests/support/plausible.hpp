@@ -24,7 +24,6 @@ class Plausible {
     std::size_t left = random_() % sizeof...(Components);
     ((left-- == 0 ? Components::describe(value.template emplace<Components>(), *this) : void()), ...);
   }
-  void operator()(const base::Later&) const {}
 
  private:
   void fill(const base::Field& field, double& value) {
@@ -40,9 +39,7 @@ class Plausible {
   requires std::is_enum_v<T>
   void fill(const base::Field&, T& value) {
     const auto all = words(T{});
-    auto word = all[random_() % all.size()];
-    while (word.later) word = all[random_() % all.size()];
-    value = word.value;
+    value = all[random_() % all.size()].value;
   }
   template <class T>
   requires requires(T& value, Plausible& visit) { T::describe(value, visit); }

@@ -26,6 +26,9 @@ if(MULDI_SANITIZE)
   list(APPEND muldi_options -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer -D_GLIBCXX_ASSERTIONS)
   add_link_options(-fsanitize=address,undefined)
 endif()
+if(MULDI_FUZZ)
+  list(APPEND muldi_options -fsanitize=fuzzer-no-link)
+endif()
 add_compile_options(${muldi_options})
 
 # Warnings are errors, in this one place.

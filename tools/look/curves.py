@@ -73,11 +73,18 @@ def columns(series, path, name, labels=None):
     return [(f"{name} {label}".strip(), x, values[:, i]) for i, label in enumerate(labels)]
 
 
+HARDLY_SEEN = 0.05  # of the height of a panel
+
+
 def add_energy(panels, series):
     names = [name for name in ("kinetic", "elastic", "electric", "gravity", "dissipated", "external", "source", "total") if f"energy/{name}" in series]
     curves = [curve for name in names for curve in columns(series, f"energy/{name}", name) if name == "total" or numpy.any(curve[2])]
     if names:
         panels.add(series, "Energy", "energy", series.unit(f"energy/{names[0]}"), curves)
+    # A field may hold so much energy at rest that what goes to and fro beside it cannot be seen.
+    if curves and max(numpy.ptp(y) for _, _, y in curves) < HARDLY_SEEN * max(numpy.abs(y).max() for _, _, y in curves):
+        changes = [(name, x, y - y[0]) for name, x, y in curves]
+        panels.add(series, "Energy exchange", "change of energy", series.unit(f"energy/{names[0]}"), changes, zero_line=True)
     if "energy/balance" in series:
         panels.add(series, "Energy balance", "error", series.unit("energy/balance"), columns(series, "energy/balance", "balance"), zero_line=True)
 

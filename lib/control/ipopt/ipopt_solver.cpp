@@ -247,6 +247,7 @@ void set_options(Ipopt::OptionsList& list, const SolveOptions& options) {
   list.SetNumericValue("bound_relax_factor", 0.0);
   // Unknowns, rows and the objective are scaled by the transcription.
   list.SetStringValue("nlp_scaling_method", "none");
+  if (options.approximate_hessian) list.SetStringValue("hessian_approximation", "limited-memory");
   if (!options.check_derivatives) return;
   list.SetStringValue("derivative_test", "second-order");
   list.SetNumericValue("point_perturbation_radius", 0.0);

@@ -1,5 +1,6 @@
 #pragma once
 /// Forces of a batch and, with duals, their exact directional derivative.
+#include "base/mutation.hpp"
 #include "fem/kernel/batch.hpp"
 #include "fem/kernel/law_calls.hpp"
 
@@ -69,6 +70,9 @@ class ForceBatch {
       for (int m = 0; m < 3; ++m) weighted[m] = map.volume * map.inverse[k][m];
       for (int i = 0; i < 3; ++i) {
         rows_[i].add(q, k, stress.P[i][0] * weighted[0] + stress.P[i][1] * weighted[1] + stress.P[i][2] * weighted[2]);
+      }
+      if constexpr (base::has(base::Mutation::sign_of_displacement)) {
+        for (L& weight : weighted) weight = -weight;
       }
       if (gathered_.charged) {
         rows_[3].add(q, k, stress.D[0] * weighted[0] + stress.D[1] * weighted[1] + stress.D[2] * weighted[2]);

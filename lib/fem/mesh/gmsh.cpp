@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <unordered_map>
@@ -191,6 +192,13 @@ Mesh read_gmsh_text(std::string_view content, const std::string& name) {
 }
 
 Mesh read_gmsh(const std::string& path) {
+  // A device or a pipe may never end.
+  std::error_code code;
+  const auto kind = std::filesystem::status(path, code).type();
+  if (kind == std::filesystem::file_type::character || kind == std::filesystem::file_type::fifo) {
+    throw base::InputError(
+        {base::Diagnostic{.place = {.file = path}, .message = "cannot read: it is a device or a pipe"}});
+  }
   errno = 0;
   std::ifstream file(path, std::ios::binary);  // a folder opens, but cannot be read
   std::ostringstream content;

@@ -21,7 +21,7 @@ struct MeshFile {
   template <class Self, class Visit>
   static void describe(Self& self, Visit& visit) {
     using namespace base;
-    visit(Field{.key = "file", .doc = "the file, from the scene's folder"}, self.path);
+    visit(Field{.key = "file", .doc = "the file, in the scene's folder or below"}, self.path);
     visit(Field{.key = "scale",
                 .doc = "multiplies the coordinates of the file, e.g. 1000 from m to mm",
                 .range = positive,

@@ -15,6 +15,9 @@ namespace muldi::fem {
 
 class PressureFilter {
  public:
+  /// Beyond, the patterns are not looked for: they would take as long as the solution.
+  static constexpr int most_cells = 60000;
+
   /// Without any pattern.
   PressureFilter() = default;
   /// `volumes` (n_cells): V_e; found at the reference configuration.

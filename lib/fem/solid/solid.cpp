@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/mutation.hpp"
 #include "base/text.hpp"
 #include "fem/solid/solid_solver.hpp"
 
@@ -150,8 +151,9 @@ double Solid::pressure_weight(const model::IntervalPoint& at) const {
 void Solid::add_volume_step(const model::IntervalPoint& at, model::IntervalForces& out,
                             model::PartLimits& limits) const {
   const auto p = pressures(*at.y);
-  const Volumes& begin = volumes_at(positions(at.q0));
-  const Volumes& end = volumes_at(positions(at.q1));
+  const bool in_middle = base::has(base::Mutation::dilatation_in_middle) && !is_incompressible();
+  const Volumes& begin = volumes_at(positions(in_middle ? at.q : at.q0));
+  const Volumes& end = volumes_at(positions(in_middle ? at.q : at.q1));
   const double c = pressure_weight(at);
   weight_ = -c * V_.cwiseProduct(p);
   begin.add_gradients(elements_, weight_, positions(out.begin));
@@ -205,6 +207,12 @@ model::IncrementSize Solid::size_of(const Eigen::VectorXd& dq, const Eigen::Vect
     if (change > 0.0) size.stage = std::max(size.stage, change / std::max(potential_scale_, change));
   }
   return size;
+}
+
+double Solid::deformation(const Eigen::VectorXd& q, const Eigen::VectorXd& dq) const {
+  force_ = positions(dq);
+  ties_.add_shared(q_.first, q, dq, -1.0, force_);
+  return force_.lpNorm<Eigen::Infinity>() / size_;
 }
 
 Eigen::Vector3d Solid::centre_of_mass(const Eigen::VectorXd& q) const {

@@ -98,6 +98,10 @@ class Solid final : public model::Substructure {
   void check_solver(const std::string& name) const;
   model::SolverSize solver_size(model::Linearisation kind, const std::string& name) const override;
   model::IncrementSize size_of(const Eigen::VectorXd& dq, const Eigen::VectorXd& dy) const override;
+  double deformation(const Eigen::VectorXd& q, const Eigen::VectorXd& dq) const override;
+  void carry(const Eigen::VectorXd& before, const Eigen::VectorXd& motion, Eigen::VectorXd& q) const override {
+    ties_.add_shared(q_.first, before, motion, 1.0, positions(q));
+  }
   double natural_length() const override { return size_; }
   void add_load_rate(const model::IntervalPoint& at, std::span<const double> du, Eigen::VectorXd& rows,
                      Eigen::VectorXd& h) const override;

@@ -21,6 +21,12 @@ bool Solid::is_viscous() const {
 }
 
 std::string Solid::note() const {
+  if (is_incompressible() && elements_.n_cells() > PressureFilter::most_cells) {
+    return base::format(
+        "solid '{}' has more than {} cells: whether patterns of element pressures exert no force is not looked for; "
+        "where a regular mesh is held on its side faces, take mean_dilatation",
+        data_.name, PressureFilter::most_cells);
+  }
   // A constant pressure on a solid that is held all around is no pattern of the mesh.
   if (filter_.n_patterns() <= 1) return {};
   return base::format(
@@ -72,8 +78,12 @@ std::string Solid::inadmissible(const Eigen::VectorXd& q) const {
   for (Eigen::Index cell = 0; cell < least.size(); ++cell) {
     if (!(least[cell] >= least[worst])) worst = cell;
   }
-  return base::format("solid '{}': cell {} is inverted (det F {:.3g})", data_.name,
-                      cell_label(data_, static_cast<int>(worst)), least[worst]);
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const int node : elements_.cells()[static_cast<std::size_t>(worst)]) {
+    middle += data_.X.segment<3>(3 * static_cast<Eigen::Index>(node)) / 8.0;
+  }
+  return base::format("solid '{}': cell {} at [{:.4g}, {:.4g}, {:.4g}] is inverted (det F {:.3g})", data_.name,
+                      cell_label(data_, static_cast<int>(worst)), middle[0], middle[1], middle[2], least[worst]);
 }
 
 }  // namespace muldi::fem

@@ -1,9 +1,5 @@
 #include "fem/solid/solid_iteration.hpp"
 
-#include <cmath>
-
-#include "math/vector_loops.hpp"
-
 namespace muldi::fem {
 namespace {
 
@@ -33,38 +29,6 @@ double SolidIteration::bytes_of(const math::SymmetricBlockPattern& pattern, cons
   const double blocks = 4.0 * 9.0 * pattern.n_blocks();
   const double multigrid = pattern.block_size() == 4 ? 1.5 * 8.0 * 2.0 * pattern.n_blocks() : 0.0;
   return blocks + multigrid + 8.0 * vectors * n;
-}
-
-/// Sizes of positions and potentials differ by orders: their diagonals are made alike.
-double SolidIteration::prepare() {
-  if (matrix_.block_size() < 4) return 1.0;
-  const auto row_start = matrix_.pattern().row_start();
-  double of_positions = 0.0, of_potentials = 0.0;
-  long n_positions = 0, n_potentials = 0;
-  for (std::size_t node = 0; node < mask_.size(); ++node) {
-    const double* block = matrix_.values().data() + 16L * row_start[node];
-    for (int i = 0; i < 4; ++i) {
-      if ((mask_[node] >> i & 1) != 0) continue;
-      (i < 3 ? of_positions : of_potentials) += std::abs(block[5 * i]);
-      ++(i < 3 ? n_positions : n_potentials);
-    }
-  }
-  if (n_positions == 0 || n_potentials == 0 || of_potentials == 0.0 || of_positions == 0.0) return 1.0;
-  const double ratio =
-      of_positions / static_cast<double>(n_positions) * (static_cast<double>(n_potentials) / of_potentials);
-  const double scale = std::exp2(std::round(0.5 * std::log2(ratio)));
-  const auto values = matrix_.values();
-  math::for_vector_chunks(matrix_.pattern().n_blocks(), [&](std::ptrdiff_t first, std::ptrdiff_t n) {
-    for (std::ptrdiff_t slot = first; slot < first + n; ++slot) {
-      double* block = values.data() + 16 * slot;
-      for (int i = 0; i < 3; ++i) {
-        block[4 * i + 3] *= scale;
-        block[12 + i] *= scale;
-      }
-      block[15] *= scale * scale;
-    }
-  });
-  return scale;
 }
 
 int SolidIteration::factorise_free() {

@@ -36,7 +36,7 @@ class SolidIteration final : public SolidLinear {
   long iterations() const { return iterations_; }
 
  private:
-  double prepare() override;
+  double prepare() override { return balance_potentials(matrix_, mask_); }
   int factorise_free() override;
   void solve_free(Eigen::VectorXd& x) override;
 

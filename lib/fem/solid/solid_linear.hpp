@@ -12,6 +12,10 @@
 
 namespace muldi::fem {
 
+/// Sizes of positions and potentials differ by orders: their diagonals are made alike. The factor that rows and columns
+/// of the potentials have been multiplied by, a power of two.
+double balance_potentials(math::SymmetricBlockMatrix& matrix, const math::NodeMask& mask);
+
 class SolidLinear {
  public:
   /// `block_size` of the pattern 3 or 4; `mask`: unknowns that are not free, those of floating electrodes included;

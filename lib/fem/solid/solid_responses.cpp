@@ -12,13 +12,16 @@ constexpr double refined_column = 1e-9;
 void SolidSolver::make_responses() {
   Eigen::MatrixXd& W = responses_.displacements();
   responses_.impose();
+  imposed_ = W;
+  for (Eigen::Index j = 0; j < W.cols(); ++j) linear_->matrix().multiply(imposed_.col(j), W.col(j));
+  linear_->solve_columns(W);
+  W = imposed_ - W;
   if (exact() && solid_.is_incompressible()) {
-    make_exact_responses();
+    if (!keep_volumes_exactly()) {
+      W = imposed_;
+      make_exact_responses();
+    }
   } else {
-    imposed_ = W;
-    for (Eigen::Index j = 0; j < W.cols(); ++j) linear_->matrix().multiply(imposed_.col(j), W.col(j));
-    linear_->solve_columns(W);
-    W = imposed_ - W;
     for (Eigen::Index j = 0; j < W.cols() && solid_.has_pressures(); ++j) {
       for (Eigen::Index node = 0; node < pattern_.n_nodes(); ++node) {
         dx_.segment<3>(3 * node) = W.col(j).segment<3>(pattern_.block_size() * node);
@@ -30,6 +33,18 @@ void SolidSolver::make_responses() {
   responses_.condense(linear_->matrix());
 }
 
+bool SolidSolver::keep_volumes_exactly() {
+  if (solid_.filter().n_patterns() > 0) return false;
+  return exact_responses_.keep_volumes({.elements = solid_.elements(),
+                                        .volumes = lagged_,
+                                        .coupling = coupling_,
+                                        .compliance = compliance_,
+                                        .proximal = proximal},
+                                       *linear_, refined_column, max_refinements, responses_.displacements(),
+                                       responses_.pressures());
+}
+
+/// Column by column, also beyond a loss of stability.
 void SolidSolver::make_exact_responses() {
   refined_ = refined_column;
   const Eigen::Index block = pattern_.block_size();

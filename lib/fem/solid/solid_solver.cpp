@@ -13,11 +13,8 @@ constexpr double augmentation = 3e2;
 /// The same where patterns of pressures are filtered out, against which it works in vain.
 constexpr double filtered_augmentation = 30.0;
 constexpr double pi = 3.14159265358979323846;
-constexpr int max_refinements = 60;
 constexpr double accuracy_at_rest = 1e-6;
 constexpr int max_exact_iterations = 60;
-/// Part of the factor's compliance that is left in the volume rows of an increment; it vanishes with the increment.
-constexpr double proximal = 1e-9;
 
 std::vector<std::vector<int>> electrodes_in(const Solid& solid, model::Linearisation kind) {
   std::vector<std::vector<int>> nodes;
@@ -60,10 +57,12 @@ SolverTask task_of(const Solid& solid, model::Linearisation kind) {
 SolidSolver::SolidSolver(const Solid& solid, model::Linearisation kind, const std::string& name)
     : solid_(solid),
       kind_(kind),
+      open_(is_open(task_of(solid, kind), name)),
       pattern_(solid.elements().n_nodes(), block_size_of(solid, kind), solid.elements().cells()),
       slots_(solid.elements().slots_in(pattern_)),
       expected_negative_(task_of(solid, kind).n_negative),
-      linear_(make_linear(task_of(solid, kind), name, pattern_, solid.unknowns().mask(), electrodes_in(solid, kind))),
+      linear_(make_linear(task_of(solid, kind), open_ ? "iterative" : name, pattern_, solid.unknowns().mask(),
+                          electrodes_in(solid, kind))),
       turning_(solid.data()),
       responses_(solid.data(), linear_->matrix().n_rows(), pattern_.block_size(), solid.n_pressures(),
                  storage_for(task_of(solid, kind))),
@@ -87,7 +86,10 @@ model::SolverSize SolidSolver::size_of(const Solid& solid, model::Linearisation 
   const double block = pattern.block_size();
   model::SolverSize size{.matrix_bytes = 8.0 * block * block * pattern.n_blocks()};
   const SolverTask task = task_of(solid, kind);
-  if (is_direct(task, name)) {
+  if (const std::optional<Package> package = package_of(name)) {
+    size.solver = name_with(SolidPackage::name_of(*package));
+    size.factor_bytes = SolidPackage::bytes_of(pattern, *package, task.n_negative);
+  } else if (is_direct(task, name)) {
     const math::LdltSize factor = math::LdltAnalysis(pattern, solid.unknowns().mask()).size();
     size.solver = name_with(factor_name(factor.ordering));
     size.factor_bytes = static_cast<double>(factor.factor_bytes + factor.work_bytes);
@@ -180,6 +182,20 @@ void SolidSolver::assemble(const model::IntervalPoint& at) {
   }
 }
 
+void SolidSolver::decide(const model::IntervalPoint& at) {
+  open_ = false;
+  Eigen::VectorXd q = at.q1;
+  solid_.positions(q) = solid_.data().X;
+  const Eigen::VectorXd v = Eigen::VectorXd::Zero(q.size());
+  const Eigen::VectorXd y = Eigen::VectorXd::Zero(at.y != nullptr ? at.y->size() : 0);
+  assemble({.q0 = q, .q1 = q, .q = q, .v = v, .u = at.u, .dt = at.dt, .y = &y});
+  // The diagonal entries of a trilinear cell are 1/27 of its mass, at eight nodes.
+  const double mean_mass = 8.0 / 27.0 * solid_.mass() / (at.dt * pattern_.n_nodes());
+  if (stiffness_of_step(linear_->matrix(), solid_.unknowns().mask(), mean_mass) <= stiff_step) return;
+  linear_ =
+      make_linear(task_of(solid_, kind_), "direct", pattern_, solid_.unknowns().mask(), electrodes_in(solid_, kind_));
+}
+
 bool SolidSolver::factorise(const model::IntervalPoint& at) {
   // The mass matrix is constant; only volumes that must not change make its equations depend on the configuration.
   const bool constant = kind_ == model::Linearisation::velocity && !solid_.is_incompressible();
@@ -188,6 +204,7 @@ bool SolidSolver::factorise(const model::IntervalPoint& at) {
     lagged_.gradient = Eigen::VectorXd::Zero(24 * solid_.n_pressures());
     lagged_.J = Eigen::VectorXd::Ones(solid_.n_pressures());
   }
+  if (open_) decide(at);
   assemble(at);
   factorised_ = linear_->factorise();
   turning_.keep(at.q1);

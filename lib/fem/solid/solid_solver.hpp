@@ -4,6 +4,7 @@
 /// With the pressures free and D the compliance of their rows, elimination adds w_e g_e g_e^T, w_e = (c V_e)^2 / D_e,
 /// to the matrix of positions and potentials; the incompressible formulations, D = 0, take a finite D_e and repeat. The
 /// gradients g_e are those of the factorisation, in every use of the factor (numerics 1.4; a newer one diverges).
+#include "fem/solid/exact_responses.hpp"
 #include "fem/solid/solid_action.hpp"
 #include "fem/solid/solver_choice.hpp"
 #include "fem/solid/tied_responses.hpp"
@@ -14,6 +15,9 @@ namespace muldi::fem {
 
 /// What may be left, relative, of the volumes that the factor of an incompressible solid lets through.
 inline constexpr double refined = 1e-15;
+inline constexpr int max_refinements = 60;
+/// Part of the factor's compliance that is left in the volume rows of an increment; it vanishes with the increment.
+inline constexpr double proximal = 1e-9;
 
 class SolidSolver final : public model::SubstructureSolver {
  public:
@@ -35,6 +39,9 @@ class SolidSolver final : public model::SubstructureSolver {
   std::string name() const override;
 
  private:
+  /// Takes a factor in place of the iteration if steps of this length are stiff, by the matrix of the reference, so
+  /// that a restart decides alike.
+  void decide(const model::IntervalPoint& at);
   void weigh_pressures(const model::IntervalPoint& at);
   void assemble(const model::IntervalPoint& at);
   void back_substitute();
@@ -44,6 +51,7 @@ class SolidSolver final : public model::SubstructureSolver {
   void pack_rows(const SolidVector& rows);
   /// Columns of the responses, all at once or each with its volume kept exactly.
   void make_responses();
+  bool keep_volumes_exactly();
   void make_exact_responses();
   void add_motion_of_bodies(const Eigen::VectorXd& dq);
   void solve_exactly();
@@ -58,6 +66,7 @@ class SolidSolver final : public model::SubstructureSolver {
   const Solid& solid_;
   model::Linearisation kind_;
   bool factorised_ = false;
+  bool open_ = false;  ///< the first matrix decides on the solver
   math::SymmetricBlockPattern pattern_;
   std::vector<std::int32_t> slots_;
   int expected_negative_ = 0;
@@ -73,6 +82,7 @@ class SolidSolver final : public model::SubstructureSolver {
   Eigen::VectorXd curvature_;
   Eigen::VectorXd rhs_;
   Eigen::MatrixXd imposed_;
+  ExactResponses exact_responses_;
   Eigen::VectorXd dx_;
   Eigen::VectorXd rows_;
   Eigen::VectorXd dp_;

@@ -12,12 +12,39 @@ constexpr double final_accuracy = 1e-13;
 
 }  // namespace
 
+std::optional<Package> package_of(const std::string& name) {
+  if (name == "cholmod") return Package::cholmod;
+  if (name == "umfpack") return Package::umfpack;
+  return std::nullopt;
+}
+
 bool is_direct(const SolverTask& task, const std::string& name) {
-  if (task.tied || name == "direct" || name == "ldlt") return true;
+  if (package_of(name) || task.tied || name == "direct" || name == "ldlt") return true;
   if (name == "iterative" || name == "cg" || name == "minres" || name == "gmres") return false;
   MULDI_EXPECT(name == "auto", "a known solver");
   const bool rest = task.kind == model::Linearisation::rest;
   return task.n_unknowns <= (rest ? direct_at_rest : direct_in_dynamics);
+}
+
+bool is_open(const SolverTask& task, const std::string& name) {
+  return name == "auto" && !task.tied && task.kind == model::Linearisation::step && task.n_unknowns > choice_from &&
+         task.n_unknowns <= choice_to;
+}
+
+double stiffness_of_step(const math::SymmetricBlockMatrix& matrix, const math::NodeMask& mask, double mean_mass) {
+  const int block = matrix.block_size();
+  const auto row_start = matrix.pattern().row_start();
+  double sum = 0.0;
+  long n = 0;
+  for (std::size_t node = 0; node < mask.size(); ++node) {
+    const double* values = matrix.values().data() + static_cast<std::ptrdiff_t>(block) * block * row_start[node];
+    for (int i = 0; i < 3; ++i) {
+      if ((mask[node] >> i & 1) != 0) continue;
+      sum += values[(block + 1) * i];
+      ++n;
+    }
+  }
+  return n > 0 ? sum / (static_cast<double>(n) * mean_mass) : 0.0;
 }
 
 math::FactorStorage storage_for(const SolverTask& task) {
@@ -49,10 +76,17 @@ SolidIteration::Options iteration_for(const SolverTask& task, const std::string&
 std::unique_ptr<SolidLinear> make_linear(const SolverTask& task, const std::string& name,
                                          const math::SymmetricBlockPattern& pattern, const math::NodeMask& mask,
                                          std::vector<std::vector<int>> electrodes) {
-  if (is_direct(task, name)) {
-    return std::make_unique<SolidFactor>(pattern, mask, std::move(electrodes), storage_for(task));
+  // The common potentials of floating electrodes are in the border, which counts its own.
+  const int n_negative = task.n_negative > 0 ? task.n_negative - static_cast<int>(electrodes.size()) : 0;
+  if (const std::optional<Package> package = package_of(name)) {
+    return std::make_unique<SolidPackage>(pattern, mask, std::move(electrodes), *package, n_negative);
   }
-  return std::make_unique<SolidIteration>(pattern, mask, std::move(electrodes), iteration_for(task, name));
+  if (is_direct(task, name)) {
+    return std::make_unique<SolidFactor>(pattern, mask, std::move(electrodes), storage_for(task), n_negative);
+  }
+  SolidIteration::Options options = iteration_for(task, name);
+  options.expected_negative = n_negative;
+  return std::make_unique<SolidIteration>(pattern, mask, std::move(electrodes), options);
 }
 
 }  // namespace muldi::fem

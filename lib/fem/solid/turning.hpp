@@ -3,12 +3,12 @@
 /// solid is strained little more than then, however far the bodies have turned (performance 6).
 ///
 /// A node turns by R_0 exp(sum_k w_k log(R_0^T R_k)) with the rotations R_k of the bodies that the solid is tied to (of
-/// ground: none) and fixed weights w_k by the inverse reference distance to their nodes. A tied node turns with its
+/// ground: none) and the fixed weights w_k of TieWeights. A tied node turns with its
 /// body, a prescribed one not at all, so that what is not free stays so in the turned frame.
 #include <Eigen/Core>
 #include <vector>
 
-#include "fem/solid/solid_description.hpp"
+#include "fem/solid/tie_weights.hpp"
 
 namespace muldi::fem {
 
@@ -31,11 +31,8 @@ class Turning {
   const Eigen::Matrix3d& of_host(int host) const { return rotations_[static_cast<std::size_t>(host)]; }
 
  private:
-  void weigh(const std::vector<std::vector<int>>& anchors);
-
   const SolidDescription* data_;
-  std::vector<Eigen::VectorXd> weights_;  // of each frame; the anchors are the hosts, and ground last if it holds nodes
-  std::vector<int> frame_of_node_;
+  TieWeights weights_;                      // a frame for each group of nodes
   std::vector<Eigen::Matrix3d> kept_;       // directors of the hosts at the factorisation
   std::vector<Eigen::Matrix3d> rotations_;  // of the anchors since then
   std::vector<Eigen::Vector3d> logs_;       // relative to the first

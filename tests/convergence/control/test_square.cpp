@@ -70,6 +70,15 @@ TEST(SquareProblem, FourBarIsTheForwardSimulation) {
   hold(at, {20.0}, ControlKind::plain);
 }
 
+TEST(SquareProblem, FourBarDrivenAtTheJointThatClosesItIsTheForwardSimulation) {
+  test::RigidSystem system = test::four_bar({}, test::earth_gravity);
+  system.joint_forces.push_back({.joint = 3, .stiffness = 2.0, .damping = 10.0, .control = 0});
+  system.controls.push_back({.name = "torque", .unit = {}, .function = 0.0});
+  ControlCase at(system);
+  at.set_horizon(10, 5.0);
+  hold(at, {20.0}, ControlKind::plain);
+}
+
 TEST(SquareProblem, InitialVelocityIsThatOfTheForwardSimulation) {
   const Eigen::VectorXd rates = Eigen::VectorXd::Constant(1, 2e-3);
   const double angle = 0.1;

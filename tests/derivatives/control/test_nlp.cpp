@@ -155,6 +155,72 @@ TEST(Nlp, DerivativesOfClosedLoops) {
   expect_clean(at.problem, test::feasibility(), resting_guess(at.problem, 5.0));
 }
 
+/// A four-bar linkage with spring, damper, stop and drive on the joint that closes the loop.
+test::RigidSystem linkage_driven_at_its_cut() {
+  test::RigidSystem system = test::four_bar({}, test::earth_gravity);
+  system.joint_forces.push_back({.joint = 3,
+                                 .stiffness = 200.0,
+                                 .rest = 0.1,
+                                 .damping = 10.0,
+                                 .stops = {.upper = -0.5, .stiffness = 300.0, .damping = 20.0},
+                                 .control = 0});
+  system.joint_forces.push_back({.joint = 0, .damping = 5.0});
+  system.controls.push_back({.name = "torque", .unit = {}, .function = 0.0});
+  return system;
+}
+
+TEST(Nlp, DerivativesOfForcesOnLoopClosingJoints) {
+  ControlCase at(linkage_driven_at_its_cut());
+  ASSERT_EQ(test::manifold_of(*at.model).tree().cut_joints, std::vector<int>{3});
+  at.set_horizon(3, 5.0);
+  at.seek_plain(1e3);
+  at.start_at_rest();
+  at.problem.final.coordinates.push_back({.name = "joints.crank", .rate = 0, .value = 0.3});
+  expect_clean(at.problem, {{1.0, KineticEnergy{}}}, resting_guess(at.problem, 5.0));
+  at.problem.horizon.longest_step = 8.0;
+  expect_clean(at.problem, {{1.0, FinalTime{}}}, resting_guess(at.problem, 6.0));
+  at.problem.final.coordinates.clear();
+  at.problem.final.equilibrium = {20.0};
+  expect_clean(at.problem, test::feasibility(), resting_guess(at.problem, 5.0));
+}
+
+TEST(Nlp, DerivativesOfLimitsOnTurns) {
+  // A ball whose references differ from node to node, and angles.
+  ControlCase ball(test::driven_free_body());
+  ball.set_horizon(3, 2.0);
+  ball.seek_plain(1.0);
+  ball.start_at_rest();
+  ball.problem.final.momentum.kind = MomentumCondition::Kind::free;
+  ball.problem.limits.longest_turn = 1.0;
+  const std::vector<std::vector<double>> turning(3, {0.0, 0.0, 0.0, 0.5, 0.2, 0.4});
+  expect_clean(ball.problem, test::feasibility(), simulate_guess(ball.problem, 2.0, turning));
+  ControlCase joint = test::joint_case(3, 10.0);
+  joint.problem.limits.longest_turn = 1.0;
+  expect_clean(joint.problem, test::feasibility(), resting_guess(joint.problem, 10.0));
+}
+
+TEST(TurnRows, OfABallAreTheRotationBetweenTheNodesWhateverTheirReferences) {
+  ControlCase at(test::driven_free_body());
+  at.set_horizon(1, 2.0);
+  at.start_at_rest();
+  const model::Manifold& manifold = *at.model->manifold;
+  Trajectory guess = resting_guess(at.problem, 2.0);
+  Eigen::VectorXd turn = Eigen::VectorXd::Zero(6);
+  turn.tail<3>() = Vector3d(0.3, -0.5, 0.4);
+  manifold.retract(guess.x[0], turn, guess.x[1]);
+  Layout layout{.n_steps = 1, .n_v = 6};
+  layout.place_nodes();
+  DiscreteDynamics dynamics(at.problem, layout, guess);
+  // Both nodes lie in their references.
+  Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(layout.n);
+  ASSERT_TRUE(dynamics.move_to(unknowns));
+  const TurnRows rows(*at.model, *dynamics.node(0).chart, guess.x[0], 1.0);
+  ASSERT_EQ(rows.n_rows(), 1);
+  const double angle = turn.tail<3>().norm();
+  EXPECT_NEAR(rows.value(0, 0, dynamics), 1.0 + 2.0 * std::cos(angle), 1e-14);
+  EXPECT_NEAR(rows.lower(0), 1.0 + 2.0 * std::cos(1.0), 1e-15);
+}
+
 TEST(Nlp, PatternsHoldEveryEntry) {
   // Differences by every unknown touch no entry outside the patterns.
   ControlCase at = test::trunk_case(2, 25.0);

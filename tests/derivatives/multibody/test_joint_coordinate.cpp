@@ -115,6 +115,17 @@ TEST(JointCoordinate, ValueGradientAndHessianAreThoseOfTheDefinition) {
     ASSERT_LT(math::derivative_error(hessian, jet_hessian).relative, 1e-12);
     const VectorXd v = test::random_entries(random, 24, 1.0);
     ASSERT_NEAR(coordinate_of.rate(at.q, v), jet_gradient.dot(v), 1e-12 * jet_gradient.norm() * v.norm());
+    model::EndDerivatives all;
+    coordinate_of.differentiate(at.q, &v, all);
+    const math::VectorFunction hessian_along = [&](const VectorXd& s) -> VectorXd {
+      return coordinate_of.hessian(at.q + s[0] * v).reshaped();
+    };
+    const MatrixXd slope = math::difference_jacobian(hessian_along, VectorXd::Zero(1), VectorXd::Constant(1, 1e-3));
+    const MatrixXd full = slope.col(0).reshaped(24, 24);
+    const Eigen::Index n = all.hessian_slope.rows();
+    const double size = 1e-9 * (1.0 + full.cwiseAbs().maxCoeff());
+    ASSERT_LT((all.hessian_slope - full.topLeftCorner(n, n)).cwiseAbs().maxCoeff(), size);
+    ASSERT_LT((all.gradient - gradient(coordinate_of.unknowns())).norm(), 1e-13 * gradient.norm());
   }
 }
 

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "support/figure.hpp"
 #include "support/solid_system.hpp"
 #include "support/trajectory.hpp"
 #include "variational/stepper.hpp"
@@ -57,8 +58,8 @@ TEST(SolidMotion, KeepsMomentumOverAThousandSteps) {
                                           (node.values.angular_momentum - angular).norm() / angular.norm()});
                     });
       ASSERT_EQ(done.result.status, variational::Status::completed) << done.result.sentence;
-      EXPECT_LT(largest, 1e-10);
-      std::cout << "momentum: " << largest << '\n';
+      const std::string how = viscosity > 0.0 ? "viscous " : "";
+      test::record_figure("5", how + "free solid, 1000 steps, momenta, relative", largest, 1e-10);
     }
   }
 }
@@ -73,8 +74,7 @@ TEST(SolidMotion, KeepsTheVolumeOfEveryCellInEveryStep) {
               const Volumes& volumes = test::solid_in(*model).volumes_at(node.state.q);
               largest = std::max(largest, (volumes.J.array() - 1.0).abs().maxCoeff());
             });
-  EXPECT_LT(largest, 1e-12);
-  std::cout << "|J - 1|: " << largest << '\n';
+  test::record_figure("13", "free solid, 1000 steps, max |J - 1| of a cell", largest, 1e-12);
 }
 
 TEST(SolidMotion, TheTwoIncompressibleFormulationsAgreeBitForBit) {
@@ -110,16 +110,17 @@ TEST(SolidMotion, IsReversibleWithoutViscosityOnly) {
   for (const Formulation formulation :
        {Formulation::displacement, Formulation::mean_dilatation, Formulation::incompressible}) {
     const double missed = way_back(floating_cube(formulation, 0.0), 5e-3, 400);
-    EXPECT_LT(missed, 1e-9);
-    EXPECT_GT(way_back(floating_cube(formulation, 0.05), 5e-3, 400), 1e-3);
-    std::cout << "missed by " << missed << '\n';
+    test::record_figure("15", "free solid, 400 steps there and back, positions (mm of 1 mm)", missed, 1e-9);
+    test::record_at_least("15", "viscous solid, distance from the start after the way back (mm)",
+                          way_back(floating_cube(formulation, 0.05), 5e-3, 400), 1e-3);
   }
 }
 
-TEST(SolidMotion, AStiffCubeSpinsFreelyWithoutSpuriousPressure) {
-  // kappa/mu = 4000, 0.1 rad a step; the dilatation of the middle configuration would give kappa sin^2(.05).
+/// The largest pressure over rho omega^2 L^2 in 200 steps of a cube with kappa/mu = 4000 that spins freely; the
+/// dilatation of the middle configuration would give kappa sin^2(turn/2).
+double pressure_in_spin(double turn) {
   const double dt = 0.3;
-  const double omega = 0.1 / dt;
+  const double omega = turn / dt;
   test::SolidSystem system = test::solid_box({2, 2, 2}, {-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5});
   system.fill(test::rubber(mu, (4000.0 - 2.0 / 3.0) * mu, Formulation::mean_dilatation), mu,
               Formulation::mean_dilatation);
@@ -129,14 +130,22 @@ TEST(SolidMotion, AStiffCubeSpinsFreelyWithoutSpuriousPressure) {
   double largest = 0.0;
   while (state.step < 200) {
     const variational::StepReport report = stepper.advance(state, {});
-    ASSERT_EQ(report.status, variational::Status::running) << report.sentence;
+    EXPECT_EQ(report.status, variational::Status::running) << report.sentence;
+    if (report.status != variational::Status::running) break;
     largest = std::max(largest, test::solid_in(*model).pressures(state.y).lpNorm<Eigen::Infinity>());
   }
-  EXPECT_LT(largest, 10.0 * 1e-3 * omega * omega);
-  EXPECT_GT(largest, 0.0);
   const int corner = system.node_at({0.5, 0.5, 0.5});
   EXPECT_NEAR(state.q.segment<3>(3 * corner).norm(), std::sqrt(0.75), 1e-2);
-  std::cout << "largest pressure over rho omega^2 L^2: " << largest / (1e-3 * omega * omega) << '\n';
+  return largest / (1e-3 * omega * omega);
+}
+
+TEST(SolidMotion, AStiffCubeSpinsFreelyWithoutSpuriousPressure) {
+  for (const double turn : {0.02, 0.1}) {
+    const double pressure = pressure_in_spin(turn);
+    EXPECT_GT(pressure, 0.0);
+    test::record_figure("14", "stiff cube, " + test::short_number(turn) + " rad a step, pressure over rho omega^2 L^2",
+                        pressure, 10.0);
+  }
 }
 
 /// What viscosity takes of the kinetic energy of a cube that spins freely: in the first half of the steps, and then.
@@ -164,7 +173,7 @@ TEST(SolidMotion, AViscousCubeSpinsFreelyWithoutDissipationOnceItHasWidened) {
   const auto [widening, spinning] = dissipated_in_spin(Formulation::incompressible, 0.1, 1000);
   EXPECT_GT(widening, 0.0);
   EXPECT_LT(widening, 1e-2);
-  EXPECT_LT(spinning, 1e-12);
+  test::record_figure("14", "viscous cube in free spin, dissipated of its energy in 500 steps", spinning, 1e-12);
   // Dilatations that change sign from node to node cost mean dilatation nothing (numerics 1.4): they decay slowly, and
   // at 0.1 rad a step grow from round-off later on.
   EXPECT_LT(dissipated_in_spin(Formulation::mean_dilatation, 0.05, 3000)[1], 1e-12);
@@ -189,7 +198,8 @@ TEST(SolidMotion, RigidRotationDissipatesNothing) {
   const double dissipated = model->work({.q0 = q0, .q1 = q1, .q = q, .v = v, .u = {}, .dt = dt, .y = &y}).dissipated;
   EXPECT_GT(kinetic, 1e-4);
   EXPECT_GE(dissipated, 0.0);
-  EXPECT_LT(dissipated, 1e-12 * kinetic);
+  test::record_figure("14", "one step of rigid rotation by 0.3 rad, dissipated of the energy", dissipated / kinetic,
+                      1e-12);
 }
 
 }  // namespace

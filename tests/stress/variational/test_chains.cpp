@@ -1,6 +1,7 @@
 /// Long chains: closed, and the same from every solver.
 #include <gtest/gtest.h>
 
+#include "support/figure.hpp"
 #include "support/systems.hpp"
 #include "support/trajectory.hpp"
 
@@ -30,8 +31,9 @@ TEST(Chains, OfFortyBodiesMoveTheSameUnderEverySolver) {
     EXPECT_EQ(run.result.status, Status::completed) << kind << run.result.sentence;
     ends.push_back(run.state.q);
   }
-  EXPECT_LT((ends[1] - ends[0]).norm(), 1e-9 * ends[0].norm());
-  EXPECT_LT((ends[2] - ends[0]).norm(), 1e-9 * ends[0].norm());
+  const double apart = std::max((ends[1] - ends[0]).norm(), (ends[2] - ends[0]).norm());
+  test::record_figure("19", "chain of 40 bodies, dense and bordered solver against the tree, relative",
+                      apart / ends[0].norm(), 1e-9);
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ class Usage(ProgramTest):
         self.assertEqual(self.message(*arguments, code=2), "error: " + sentence)
 
     def test_no_verb(self):
-        self.expect([], "give a verb: run, optimise, check, validate, compare, info, schema, plot, report, paraview, new, explain; see 'muldi-sim --help'")
+        self.expect([], "give a verb: run, optimise, check, validate, compare, info, schema, plot, report, paraview, new, explain, sweep, calibrate; see 'muldi-sim --help'")
 
     def test_misspelt_verb(self):
         self.expect(["valdate", "x.yaml"], "no verb 'valdate' (did you mean 'validate'?); see 'muldi-sim --help'")

@@ -6,6 +6,44 @@ import unittest
 from program import SCENES, ProgramTest, attribute, options, values
 
 
+KEPT = " (what was computed is in a.h5)"
+WHY = {
+    "loss_of_equilibrium": "\n  why: pull-in or buckling: beyond this load the system jumps to a state far away, or collapses"
+    "\n  try: stay below this load; statics.continuation: arc_length follows the curve past the limit onto the unstable branch, and dynamics "
+    "shows where the system goes",
+    "muscle_collapse": "\n  why: pull-in: the field squeezed the muscle faster than its elasticity could resist, or a load crushed it"
+    "\n  try: a lower field, or a ramp instead of a jump (a sudden field pulls in at 94 % of the static limit); more viscosity; a smaller "
+    "dynamics.step if the field is moderate",
+    "inverted_element": "\n  why: a cell of the mesh was pressed through itself, by a field beyond pull-in, a load, or a step that is too large"
+    "\n  try: a smaller dynamics.step, or a ramp instead of a jump; a lower field or load; finer or better shaped cells there",
+    "step_too_large": "\n  why: the midpoint of two attitudes that far apart is no attitude: the step cannot follow the rotation"
+    "\n  try: a dynamics.step in which no body turns by more than about 0.1 rad, or 0.5 at the most",
+    "explicit": "\n  why: beyond this step the explicit integrator multiplies every error, and the motion blows up"
+    "\n  try: a dynamics.step below the stable one, coarser cells where they are smallest, or integrator: midpoint",
+    "no_convergence": "\n  why: Newton's iteration found no next state: too much happens within one step, or the motion is not determined there"
+    "\n  try: half the dynamics.step; ramps for controls that jump; more solver.max_iterations; for components of your own `muldi-sim check "
+    "--derivatives`",
+    "statics": "\n  why: no equilibrium was found near the last one, or the system can move without any force"
+    "\n  try: more statics.steps, or continuation: arc_length; hold what can move freely by joints, springs or muscles",
+    "rank_change": "\n  why: at a change point a closed mechanism may go on in two ways, and its joints do not say which"
+    "\n  try: another scene pose, links of slightly other lengths, or a joint stop that keeps the mechanism off this pose",
+}
+# Flat: both cranks and the coupler lie on one line.
+PARALLELOGRAM = """muldi: 1
+bodies:
+  left: {mass: 10, inertia: [100, 3000, 3000], position: [25, 0, 0], points: {a: [-25, 0, 0], b: [25, 0, 0]}}
+  right: {mass: 10, inertia: [100, 3000, 3000], position: [125, 0, 0], points: {a: [-25, 0, 0], b: [25, 0, 0]}}
+  coupler: {mass: 20, inertia: [100, 20000, 20000], position: [100, 0, 0], points: {a: [-50, 0, 0], b: [50, 0, 0]}}
+joints:
+  A: {type: revolute, from: {body: ground, at: [0, 0, 0]}, to: {body: left, at: a}, axis: [0, 0, 1]}
+  B: {type: revolute, from: {body: left, at: b}, to: {body: coupler, at: a}, axis: [0, 0, 1]}
+  C: {type: revolute, from: {body: coupler, at: b}, to: {body: right, at: b}, axis: [0, 0, 1]}
+  D: {type: revolute, from: {body: right, at: a}, to: {body: ground, at: [100, 0, 0]}, axis: [0, 0, 1]}
+initial: {joints: {A: {velocity: 0.02}, C: {velocity: 0.02}}}
+dynamics: {duration: 1 s, step: 1 ms}
+"""
+
+
 class LostEquilibrium(ProgramTest):
     CRITICAL = 58009.6395041  # V/mm, closed form of the free ideal dielectric
 
@@ -23,7 +61,8 @@ class LostEquilibrium(ProgramTest):
         self.assertLess(below - above, 1e-6 * 60_000)
         self.assertEqual(
             self.said,
-            f"error: loss_of_equilibrium: the equilibrium is lost at a load between {above:.10g} and {below:.10g} (what was computed is in a.h5)",
+            f"error: loss_of_equilibrium: the equilibrium is lost with control 'supply' between {above:.10g} and {below:.10g} V/mm; there "
+            f"muscle 'actuator' is at stretch {values(self.output, 'statics/muscles/actuator/stretch')[-1]:.4g}{KEPT}{WHY['loss_of_equilibrium']}",
         )
 
     def test_is_the_status_and_keeps_the_stable_branch(self):
@@ -47,7 +86,7 @@ class Collapse(ProgramTest):
         time = values(output, "time")
         where = attribute(output, "status_where")
         self.assertRegex(where, r"^muscle 'membrane': stretch 0\.[12]\d* below 0\.2$")
-        self.assertEqual(message, f"error: muscle_collapse at t = {time[-1]:.6g}: {where} (what was computed is in a.h5)")
+        self.assertEqual(message, f"error: muscle_collapse at t = {time[-1]:.6g} ms: {where}{KEPT}{WHY['muscle_collapse']}")
         self.assertEqual(attribute(output, "status_time"), time[-1])
         stretch = values(output, "muscles/membrane/stretch")
         self.assertTrue((stretch >= 0.2).all())
@@ -65,8 +104,8 @@ class TooLargeSteps(ProgramTest):
             with self.subTest(step=step):
                 arguments = [SCENES / "free_body.yaml", "-o", "a.h5", "--force", *options([f"dynamics.step={step}", f"dynamics.duration={100 * step}"])]
                 message = self.message("run", *arguments, code=3)
-                sentence = f"a body turns by {turn} rad in one step (limit 1): use a smaller step"
-                self.assertEqual(message, f"error: step_too_large at t = 0: {sentence} (what was computed is in a.h5)")
+                sentence = f"body 'plate' turns by {turn} rad in one step (limit 1): use a smaller step"
+                self.assertEqual(message, f"error: step_too_large at t = 0 ms: {sentence}{KEPT}{WHY['step_too_large']}")
                 output = self.folder / "a.h5"
                 self.assertEqual(attribute(output, "status"), "step_too_large")
                 self.assertEqual(list(values(output, "time")), [0.0])
@@ -76,7 +115,7 @@ class TooLargeSteps(ProgramTest):
         done = self.program("run", SCENES / "free_body.yaml", "-o", "a.h5", "--set", "dynamics.step=8")
         self.assertEqual(
             done.stderr,
-            "warning: at t = 8 a body turns by 0.927 rad in one step; results lose accuracy, use a smaller step\ncompleted: a.h5\n",
+            "warning: at t = 8 ms: body 'plate' turns by 0.927 rad in one step; results lose accuracy: take a smaller dynamics.step\ncompleted: a.h5\n",
         )
 
     def test_below_are_not(self):
@@ -86,7 +125,7 @@ class TooLargeSteps(ProgramTest):
 class NoConvergence(ProgramTest):
     def test_is_told_with_the_number_of_iterations(self):
         message = self.message("run", SCENES / "double_pendulum.yaml", "-o", "a.h5", "--set", "solver.max_iterations=1", code=3)
-        self.assertEqual(message, "error: no_convergence at t = 0: no convergence in 1 Newton iterations (what was computed is in a.h5)")
+        self.assertEqual(message, f"error: no_convergence at t = 0 ms: no convergence in 1 Newton iterations{KEPT}{WHY['no_convergence']}")
         self.assertEqual(attribute(self.folder / "a.h5", "status"), "no_convergence")
         self.assertEqual(list(values(self.folder / "a.h5", "time")), [0.0])
 
@@ -95,7 +134,111 @@ class NoConvergence(ProgramTest):
         self.assertEqual(
             message,
             "error: no_convergence: the system can move without any force: hold it by joints, springs or muscles before asking for its "
-            "equilibrium (what was computed is in a.h5)",
+            f"equilibrium{KEPT}{WHY['statics']}",
+        )
+
+
+class InvertedElement(ProgramTest):
+    def test_names_its_cell(self):
+        """A membrane under a sudden field beyond its dynamic pull-in."""
+        scene = self.write("a.yaml", (SCENES / "membrane_fe.yaml").read_text().replace("statics: {steps: 6}\n", ""))
+        message = self.message("run", scene, "-o", "a.h5", "--set", "controls.supply.potential=30 kV", code=3)
+        time, where = attribute(self.folder / "a.h5", "status_time"), attribute(self.folder / "a.h5", "status_where")
+        self.assertRegex(where, r"^solid 'membrane': cell 0 at \[5, 5, 0\.25\] is inverted \(det F -?[0-9.e-]+\)$")
+        warning = f"warning: at t = {time:.6g} ms: {where}\n"
+        self.assertEqual(message, f"{warning}error: inverted_element at t = {time:.6g} ms: {where}{KEPT}{WHY['inverted_element']}")
+
+
+class ExplicitStep(ProgramTest):
+    def test_beyond_the_stable_one_is_refused(self):
+        overrides = ["solids.cube.mesh.box.cells=[2, 2, 2]", "materials.polymer.viscous.viscosity=0", "dynamics.integrator=explicit"]
+        text = (SCENES / "cube.yaml").read_text()
+        scene = self.write("a.yaml", "".join(line for line in text.splitlines(True) if "viscous:" not in line))
+        overrides = [overrides[0], overrides[2], "dynamics.step=0.01"]
+        message = self.message("run", scene, "-o", "a.h5", *options(overrides), code=3).split("\n", 1)[1]
+        where = attribute(self.folder / "a.h5", "status_where")
+        self.assertRegex(where, r"^the explicit integrator is stable for steps below 0\.00\d+ \(2/omega of the fastest wave in the mesh\), the step is 0\.01: ")
+        self.assertEqual(message, f"error: step_too_large at t = 0 ms: {where}{KEPT}{WHY['explicit']}")
+
+
+class ChangePoint(ProgramTest):
+    def test_in_the_scene_pose_of_a_parallelogram_is_told(self):
+        message = self.message("run", self.write("a.yaml", PARALLELOGRAM), "-o", "a.h5", code=3)
+        sentence = "the loop constraints have a higher rank than in the scene pose, which is a change point of the mechanism: give another scene pose"
+        self.assertEqual(message, f"error: rank_change at t = 1 ms: {sentence}{KEPT}{WHY['rank_change']}")
+
+
+class Buckling(ProgramTest):
+    def test_is_warned_of_with_place_and_time(self):
+        done = self.program("run", SCENES / "revolute_joint_lumped.yaml", "-o", "a.h5", *options(["initial.joints.hinge.velocity=0.01", "dynamics.duration=20"]))
+        self.assertRegex(
+            done.stderr,
+            r"^warning: at t = 8 ms: muscle 'upper': compressed with 0\.4\d+ beyond its buckling load 0\.4\d+ as a slender pinned rod; a lumped "
+            r"muscle stays straight: where that matters take `model: fe`, a shorter or thicker muscle, or less compression\ncompleted: a\.h5\n$",
+        )
+
+
+class Chaos(ProgramTest):
+    def runs(self, scene, duration):
+        self.run_scene(scene, "a.h5", *options([f"dynamics.duration={duration}"]))
+        self.run_scene(scene, "b.h5", *options([f"dynamics.duration={duration}", "gravity[1]=-9.81000000001 m/s^2"]))
+        return self.program("compare", "a.h5", "b.h5", code=1).stdout.splitlines()
+
+    def test_is_told_where_two_runs_drift_apart_exponentially(self):
+        said = self.runs("double_pendulum.yaml", "10 s")
+        self.assertRegex(
+            said[-3], r"^exponential growth: /bodies/\w+/\w+ drifts apart tenfold every \d\.\d+e\+03 ms, from round-off at t = \d+ ms( to .*)?$"
+        )
+        self.assertEqual(
+            said[-2:],
+            [
+                "  why: an unstable or chaotic motion forgets its start, round-off is enough: neither of the two is wrong",
+                "  try: compare energies and momenta (--only 'energy/*' --only 'momentum/*'), or a shorter time",
+            ],
+        )
+
+    def test_is_not_suspected_of_regular_motion(self):
+        self.run_scene("pendulum.yaml", "a.h5", *options(["dynamics.duration=5 s"]))
+        self.run_scene("pendulum.yaml", "b.h5", *options(["dynamics.duration=5 s", "gravity[1]=-9.811 m/s^2"]))
+        self.assertNotIn("exponential", self.program("compare", "a.h5", "b.h5", code=1).stdout)
+
+
+class OptimalControl(ProgramTest):
+    def last_words(self, *arguments):
+        done = self.program("optimise", *arguments, code=3)
+        return [line for line in done.stderr.splitlines() if not line.startswith("stage ")]
+
+    def test_says_what_is_infeasible_and_what_to_try(self):
+        slider = SCENES / "double_integrator_optimal.yaml"
+        said = self.last_words(slider, "-o", "a.h5", "--set", "optimal_control.controls.push.max=0.01")
+        self.assertRegex(
+            said[0],
+            r"^error: infeasible at t = \d+ ms: no motion near the guess fulfils all conditions: the violation has a minimum there; the "
+            r"largest violation is that of [\w. ]+ \(the best iterate is in a\.h5\)$",
+        )
+        self.assertEqual(
+            said[1:],
+            [
+                "  why: no controls within their bounds meet all conditions, as far as can be told from this guess",
+                "  try: a longer duration, wider bounds or limits, or fewer conditions at the end (the largest violation says which is in the "
+                "way); another guess",
+            ],
+        )
+
+    def test_says_how_to_go_on_from_the_limit_of_iterations(self):
+        stages = "optimal_control.stages=[{minimise: {effort: {scale: 1.0e-14}}, max_iterations: 3}]"
+        said = self.last_words(SCENES / "revolute_joint_optimal.yaml", "-o", "a.h5", "--set", stages)
+        self.assertRegex(
+            said[0],
+            r"^error: iteration_limit at t = \d+ ms: the limit of iterations is reached; the best iterate so far is kept; the largest "
+            r"violation is that of equation of motion \(the best iterate is in a\.h5\)$",
+        )
+        self.assertEqual(
+            said[1:],
+            [
+                "  why: the optimiser was stopped on its way; its best iterate is kept",
+                "  try: more max_iterations in this stage, or go on from the result with guess: {from: FILE}",
+            ],
         )
 
 

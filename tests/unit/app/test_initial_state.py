@@ -67,8 +67,11 @@ class StaticEquilibrium(ProgramTest):
         message = self.message("run", SCENES / "free_body.yaml", "-o", "a.h5", "--set", "initial.from=static_equilibrium", code=3)
         self.assertEqual(
             message,
-            "error: loss_of_equilibrium at t = 0: no static equilibrium under the controls at t = 0: the system can move without any "
-            "force: hold it by joints, springs or muscles before asking for its equilibrium (what was computed is in a.h5)",
+            "error: loss_of_equilibrium at t = 0 ms: no static equilibrium under the controls at t = 0: the system can move without any "
+            "force: hold it by joints, springs or muscles before asking for its equilibrium (what was computed is in a.h5)\n"
+            "  why: pull-in or buckling: beyond this load the system jumps to a state far away, or collapses\n"
+            "  try: stay below this load; statics.continuation: arc_length follows the curve past the limit onto the unstable branch, and "
+            "dynamics shows where the system goes",
         )
 
 

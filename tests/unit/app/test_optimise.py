@@ -51,6 +51,41 @@ class Optimise(ProgramTest):
         self.program("optimise", JOINT, "-o", "b.h5", *options([guess, "optimal_control.step=5"]))
         self.assertEqual(values(self.folder / "b.h5", "time").shape, (41,))
 
+    def test_goes_on_from_a_result_of_run_with_another_step(self):
+        forward = ["dynamics={duration: 200 ms, step: 2 ms}", "record.every=3"]
+        self.program("run", JOINT, "-o", "run.h5", *options(forward))
+        guess = f"optimal_control.guess={{from: {self.folder / 'run.h5'}}}"
+        self.program("optimise", JOINT, "-o", "a.h5", "--set", guess)
+        self.assertAlmostEqual(float(values(self.folder / "a.h5", "optimum/1/sum_squared_field")), 5763.8653, delta=0.006)
+
+    def test_starts_on_the_motion_of_a_run_of_the_same_step(self):
+        for scene, step in ((JOINT, 10), (SCENES / "four_bar_optimal.yaml", 20), (SCENES / "crane_rest_to_rest.yaml", 50)):
+            with self.subTest(scene=scene.stem):
+                # Fields at their bounds are moved off these by the solver.
+                held = ["controls.antagonist.field=5 kV/mm"] if scene == JOINT else []
+                forward = [f"dynamics={{duration: {10 * step}, step: {step}}}", "record.every=1", *held]
+                self.program("run", scene, "-o", "run.h5", "--force", *options(forward))
+                problem = [f"optimal_control.duration={10 * step}", "optimal_control.final={momentum: free}", "optimal_control.replay={}",
+                           f"optimal_control.guess={{from: {self.folder / 'run.h5'}}}"]
+                self.program("optimise", scene, "-o", "a.h5", "--force", *options(problem))
+                self.assertLess(values(self.folder / "a.h5", "optimum/1/iterates/infeasibility")[0], 1e-9)
+
+    def test_refuses_guesses_from_files_without_a_motion_of_the_system(self):
+        self.program("run", SCENES / "pendulum.yaml", "-o", "other.h5", "--set", "dynamics.duration=10 ms")
+        static = SCENES / "muscle_force_stretch.yaml"
+        self.program("run", static, "-o", "static.h5")
+        cases = {"other.h5": "is of another system or records less: it has no controls/agonist", "static.h5": "holds no motion to start from"}
+        for name, why in cases.items():
+            path = self.folder / name
+            message = self.message("optimise", JOINT, "--set", f"optimal_control.guess={{from: {path}}}", code=2)
+            self.assertEqual(message, f"--set optimal_control.guess={{from: {path}}}: error: optimal_control.guess: '{path}' {why}")
+
+    def test_is_not_resumed_but_told_how_to_go_on(self):
+        message = self.message("optimise", JOINT, "--resume", "a.h5", code=2)
+        self.assertEqual(message, "error: 'a.h5' cannot be resumed: the solver of an optimisation keeps no state from which it could go on as if "
+                                  "unbroken; start from the last iterate instead, into another file: "
+                                  f"--set 'optimal_control.guess={{from: {self.folder.resolve() / 'a.h5'}}}'")
+
     def test_says_where_an_infeasible_problem_fails(self):
         done = self.program("optimise", SLIDER, "-o", "a.h5", "--set", "optimal_control.controls.push.max=0.01", code=3)
         self.assertIn("error: infeasible", done.stderr)
@@ -90,7 +125,7 @@ class SolverLibrary(ProgramTest):
 class Derivatives(ProgramTest):
     def test_of_every_kind_of_scene_are_right(self):
         for scene in ("revolute_joint_lumped", "four_bar", "slider_crank", "slack_cable", "cube", "round_actuator_lumped", "revolute_joint_optimal",
-                      "four_bar_optimal"):
+                      "four_bar_optimal", "boxed_cube_I", "boxed_cube_II", "boxed_cube_III", "membrane_fe", "universal_joint_fe"):
             with self.subTest(scene=scene):
                 small = ["--set", "solids.cube.mesh.box.cells=[2, 2, 2]"] if scene == "cube" else []
                 done = self.program("check", "--derivatives", SCENES / f"{scene}.yaml", *small)

@@ -48,6 +48,16 @@ class Plot(ProgramTest):
         self.assertEqual([found.count(text) for text in ("a", "b", "upper")], [8, 8, 6])
         self.assertEqual(figures[0], figures[1])
 
+    def test_shows_the_exchange_of_energies_that_a_field_at_rest_would_hide(self):
+        self.run_scene("revolute_joint_fe.yaml", "a.h5", "--no-progress", *options(["dynamics.duration=20"]))
+        self.program("plot", "a.h5", "--what", "energy")
+        found = texts(self.folder / "a.svg")
+        self.assertIn("Energy exchange", found)
+        self.assertIn("change of energy (mJ)", found)
+        self.run_scene("pendulum.yaml", "b.h5", "--no-progress")
+        self.program("plot", "b.h5", "--what", "energy")
+        self.assertNotIn("Energy exchange", texts(self.folder / "b.svg"))
+
     def test_shows_where_equilibria_are_unstable(self):
         self.run_scene("pull_in.yaml", "a.h5")
         self.program("plot", "a.h5", "--what", "muscles", "-o", "a.svg")
@@ -106,13 +116,33 @@ class Plot(ProgramTest):
         self.assertIn("coordinate (rad)", texts(self.folder / "a.svg"))
 
 
+class View(ProgramTest):
+    def test_is_a_still_picture_of_bodies_muscles_and_solids(self):
+        self.run_scene("revolute_joint_lumped.yaml", "a.h5", *options(["dynamics.duration=100", "record.every=20"]))
+        self.program("plot", "a.h5", "--what", "view", "-o", "a.svg")
+        text = (self.folder / "a.svg").read_text()
+        # A box of six faces, two tubes of ten sides and two ends; the first state behind the last one.
+        self.assertEqual([group.split("</g>")[0].count("<path") for group in text.split('<g id="PolyCollection')[1:]], [6 + 2 * 12, 6 + 2 * 12])
+        self.program("plot", "a.h5", "--what", "view", "-o", "b.svg")
+        self.assertEqual(text, (self.folder / "b.svg").read_text())
+
+    def test_is_of_one_file_that_holds_something_to_see(self):
+        self.run_scene("cube.yaml", "a.h5", *options(["dynamics.duration=2e-3", "solids.cube.mesh.box.cells=[2, 2, 2]"]))
+        for words in (["a.h5", "a.h5", "--what", "view"], ["a.h5", "--what", "view,energy"]):
+            self.assertEqual(self.message("plot", *words, code=2), "error: --what: view is a picture of one file: ask for it alone")
+        self.assertEqual(
+            self.message("plot", "a.h5", "--what", "view", code=2),
+            "error: 'a.h5' holds nothing to see: no bodies, muscles or springs, and no fields of solids (record.fields)",
+        )
+
+
 class Refuses(ProgramTest):
     def test_unknown_kinds_and_what_no_file_holds(self):
         self.run_scene("pendulum.yaml", "a.h5", *options(["dynamics.duration=10"]))
         self.assertEqual(
             self.message("plot", "a.h5", "--what", "enrgy", code=2),
             "error: --what: no plot 'enrgy' (did you mean 'energy'?); known: energy, joints, muscles, controls, points, probes, momentum, solver, "
-            "optimum, convergence",
+            "optimum, convergence, view",
         )
         self.assertEqual(
             self.message("plot", "a.h5", "--what", "energy,muscles", code=2),

@@ -16,6 +16,8 @@ constexpr double mu = 0.233;
 
 bool on_wall(const Vector3d& X) { return X.minCoeff() < 1e-9 || X.maxCoeff() > 1.0 - 1e-9; }
 
+bool on_side(const Vector3d& X) { return X.head<2>().minCoeff() < 1e-9 || X.head<2>().maxCoeff() > 1.0 - 1e-9; }
+
 /// A cube of 4^3 cells with all walls held; `force` of a node inside by its position, for the value 1.
 test::SolidSystem closed_box(Formulation formulation, const std::function<Vector3d(const Vector3d&)>& force) {
   test::SolidSystem system = test::solid_box({4, 4, 4}, {0, 0, 0}, {1, 1, 1});
@@ -55,6 +57,28 @@ TEST(ClosedBox, KnowsThePressuresWithoutForce) {
       "force: they are filtered out of the pressures, and the volume is kept of groups of cells instead of every "
       "single one");
   EXPECT_EQ(test::solid_in(*test::make_model(closed_box(Formulation::mean_dilatation, up_and_down))).note(), "");
+}
+
+TEST(ClosedBox, AnOpenSideLeavesThePatternsAcrossIt) {
+  // (-1)^(i+j) f(k) with the side k = 4 open: at its nodes the four forces of such a checkerboard cancel too. The other
+  // two families and the constant one do not.
+  test::SolidSystem system = test::solid_box({4, 4, 4}, {0, 0, 0}, {1, 1, 1});
+  for (int i = 0; i < 3; ++i) {
+    system.hold([](const Vector3d& X) { return on_wall(X) && !(X[2] > 1 - 1e-9 && !on_side(X)); }, i);
+  }
+  system.fill(test::rubber(mu, 0.0, Formulation::incompressible), mu, Formulation::incompressible);
+  const auto model = test::make_model(system);
+  const Solid& solid = test::solid_in(*model);
+  ASSERT_EQ(solid.filter().n_patterns(), 4);
+  Eigen::VectorXd p(64);
+  for (int cell = 0; cell < 64; ++cell) p[cell] = ((cell % 4 + cell / 4 % 4) % 2 == 0 ? 1.0 : -1.0) * (1 + cell / 16);
+  solid.filter().keep_pressures(p);
+  EXPECT_LT(p.norm(), 1e-12);
+  EXPECT_EQ(
+      solid.note(),
+      "solid 'box' is held in such a way that 4 patterns of element pressures, checkerboards among them, exert no "
+      "force: they are filtered out of the pressures, and the volume is kept of groups of cells instead of every "
+      "single one");
 }
 
 TEST(ClosedBox, RollersAndDistortedCellsHaveNoSuchPatterns) {

@@ -86,11 +86,12 @@ TEST(SolidLimits, AnInvertedStartNamesItsCell) {
   statics::StaticState state = test::static_start(*model);
   // 1.3 down: det F - 1 = -1.3 dN/dz = -1.3 ((1 + 1/sqrt 3)/2)^2/0.5 at the nearest Gauss point.
   state.q[3 * system.node_at({1, 1, 1}) + 2] = -0.3;
-  EXPECT_EQ(model->inadmissible_anywhere(state.q), "solid 'box': cell 7 is inverted (det F -0.617)");
+  EXPECT_EQ(model->inadmissible_anywhere(state.q),
+            "solid 'box': cell 7 at [0.75, 0.75, 0.75] is inverted (det F -0.617)");
   const statics::EquilibriumReport report =
       statics::EquilibriumSolver(*model, {}).solve(state, std::vector<double>{0.0});
   EXPECT_FALSE(report.converged);
-  EXPECT_EQ(report.inadmissible, "solid 'box': cell 7 is inverted (det F -0.617)");
+  EXPECT_EQ(report.inadmissible, "solid 'box': cell 7 at [0.75, 0.75, 0.75] is inverted (det F -0.617)");
 }
 
 TEST(SolidLimits, ALoadTooLargeForOneStepLeavesTheStateAndIsReported) {
@@ -106,7 +107,10 @@ TEST(SolidLimits, ALoadTooLargeForOneStepLeavesTheStateAndIsReported) {
   statics::Sweep sweep(*model, {0.0}, {1.0}, {.from = 1e3, .to = 2e3, .steps = 2});
   const statics::SweepResult result = sweep.run(state, {});
   EXPECT_EQ(result.end, statics::SweepResult::End::loss_of_equilibrium);
-  EXPECT_EQ(result.sentence, "no stable equilibrium at the first load");
+  EXPECT_EQ(
+      result.sentence,
+      "no stable equilibrium at the first load: the forces move on until solid 'box': cell 7 at [0.75, 0.75, 0.75] "
+      "is inverted (det F -0.0803)");
 }
 
 TEST(SolidLimits, AnEquilibriumHoldsWhatIsPrescribed) {

@@ -5,6 +5,8 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "fem/solid/solid_factor.hpp"
+#include "statics/equilibrium.hpp"
 #include "support/solid_system.hpp"
 #include "variational/stepper.hpp"
 
@@ -51,11 +53,88 @@ TEST(SolverChoice, DoesNotChangeResults) {
       const VectorXd direct = after_steps(system, "direct", 4);
       const double moved = (direct - system.solid.X).lpNorm<Eigen::Infinity>();
       EXPECT_GT(moved, 1e-7);
-      for (const char* solver : {"auto", "ldlt", "iterative", "minres", "gmres"}) {
+      for (const char* solver : {"auto", "ldlt", "cholmod", "umfpack", "iterative", "minres", "gmres"}) {
         EXPECT_LT((after_steps(system, solver, 4) - direct).lpNorm<Eigen::Infinity>(), 1e-9)
             << solver << ' ' << static_cast<int>(formulation) << ' ' << legacy;
       }
     }
+  }
+}
+
+struct AtRest {
+  VectorXd q;
+  statics::Stability stability;
+};
+
+AtRest at_rest(const test::SolidSystem& system, const std::string& solver) {
+  const auto model = test::make_model(system);
+  statics::StaticState state = test::static_start(*model);
+  const auto report = statics::EquilibriumSolver(*model, {.substructures = solver}).solve(state, {});
+  EXPECT_TRUE(report.converged) << solver;
+  return {state.q, report.stability};
+}
+
+TEST(SolverChoice, DoesNotChangeEquilibria) {
+  for (const Formulation formulation : {Formulation::mean_dilatation, Formulation::incompressible}) {
+    for (const bool legacy : {true, false}) {
+      const test::SolidSystem system = cube(4, formulation, legacy, true);
+      const AtRest direct = at_rest(system, "direct");
+      for (const char* solver : {"cholmod", "umfpack", "iterative"}) {
+        const AtRest other = at_rest(system, solver);
+        EXPECT_LT((other.q - direct.q).lpNorm<Eigen::Infinity>(), 1e-10)
+            << solver << ' ' << static_cast<int>(formulation) << ' ' << legacy;
+        EXPECT_EQ(other.stability, direct.stability) << solver;
+      }
+    }
+  }
+}
+
+/// One hexahedron of four unknowns a node whose matrix has zeros on the diagonal: no factor without pivoting.
+TEST(SolverChoice, AMatrixThatNeedsPivotsIsFactorisedByUmfpack) {
+  const std::vector<std::array<int, 8>> cells = {{0, 1, 2, 3, 4, 5, 6, 7}};
+  const math::SymmetricBlockPattern pattern(8, 4, cells);
+  math::NodeMask mask(8, 0);
+  mask[0] = 0b0011;
+  SolidFactor factor(pattern, mask, {}, math::FactorStorage::double_precision, 16);
+  math::SymmetricBlockMatrix& A = factor.matrix();
+  // Pairs of nodes (a, a + 1) coupled by the identity: eigenvalues +1 and -1, sixteen of each.
+  const auto couple = [&](int a, int b) {
+    double* block = A.values().data() + 16 * pattern.slot(a, b);
+    for (int i = 0; i < 4; ++i) block[5 * i] = 1.0;
+  };
+  for (int a = 0; a < 8; a += 2) couple(a, a + 1);
+  // The partners of the masked unknowns are masked with them.
+  mask[1] = 0b0011;
+  SolidFactor whole(pattern, mask, {}, math::FactorStorage::double_precision, 14);
+  std::copy(A.values().begin(), A.values().end(), whole.matrix().values().begin());
+  ASSERT_TRUE(whole.factorise());
+  EXPECT_TRUE(whole.is_pivoted());
+  EXPECT_EQ(whole.n_negative(), 14);
+  VectorXd x = VectorXd::LinSpaced(32, 1.0, 32.0);
+  whole.solve(x);
+  for (int i = 0; i < 32; ++i) {
+    const bool masked = i % 8 < 2 && i < 8 ? true : i == 4 || i == 5;
+    const int partner = i / 4 % 2 == 0 ? i + 4 : i - 4;
+    EXPECT_NEAR(x[i], masked ? 0.0 : 1.0 + partner, 1e-12) << i;
+  }
+  // Without their partners the unknowns 4 and 5 have no equation.
+  EXPECT_FALSE(factor.factorise());
+}
+
+TEST(SolverChoice, StiffStepsOfLargeSolidsAreFactorised) {
+  // 17^3 nodes, 18 thousand unknowns: the diagonal over that of the mass is 1 + (3/4 c_P^2 dt^2 + 3/2 eta dt/rho)/h^2
+  // and a little more by shear, c_P^2 = (20 + 2 mu)/rho, rho 1e-3, eta .4, h 1/8.
+  const auto model = test::make_model(cube(16, Formulation::displacement, true, false));
+  for (const double dt : {1e-4, 1e-2}) {
+    variational::State state = test::moving_state(*model, dt);
+    const auto& part = *model->substructures.front();
+    part.place({.u = {}, .u_end = {}}, state.q, state.y);
+    const VectorXd v = VectorXd::Zero(state.q.size());
+    const auto solver = part.make_solver(model::Linearisation::step, "auto");
+    EXPECT_EQ(solver->name(), "solid cg (chebyshev, multigrid)");
+    ASSERT_TRUE(
+        solver->factorise({.q0 = state.q, .q1 = state.q, .q = state.q, .v = v, .u = {}, .dt = dt, .y = &state.y}));
+    EXPECT_EQ(solver->name(), dt < 1e-3 ? "solid cg (chebyshev, multigrid)" : "solid ldlt (nested_dissection)");
   }
 }
 
@@ -83,6 +162,9 @@ TEST(SolverChoice, IsNamedAndSized) {
   EXPECT_GT(iterative.matrix_bytes, 8.0 * 16 * 125 * 7);
   EXPECT_LT(iterative.matrix_bytes, 8.0 * 16 * 125 * 14);
   EXPECT_EQ(solid.solver_size(Linearisation::velocity, "cg").solver, "solid cg (chebyshev, multigrid)");
+  EXPECT_EQ(solid.solver_size(Linearisation::step, "cholmod").solver, "solid cholmod");
+  EXPECT_EQ(solid.solver_size(Linearisation::rest, "umfpack").solver, "solid umfpack");
+  EXPECT_GT(solid.solver_size(Linearisation::rest, "umfpack").factor_bytes, 8.0 * 16 * 125 * 14);
   EXPECT_THROW(solid.check_solver("cg"), base::InputError);
   EXPECT_NO_THROW(solid.check_solver("minres"));
 }

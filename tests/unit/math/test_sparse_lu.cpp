@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 
 #include "base/error.hpp"
+#include "math/sparse_cholesky.hpp"
 #include "math/sparse_ldlt.hpp"
 #include "math/sparse_lu.hpp"
 #include "support/box_matrix.hpp"
@@ -67,6 +68,52 @@ TEST(SparseLu, AgreesWithTheSymmetricFactorOnNearlyIncompressibleCells) {
   Eigen::VectorXd y = b;
   ldlt.solve(y);
   EXPECT_LT((x - y).norm(), 1e-11 * y.norm()) << "condition number about 1e5";
+}
+
+TEST(SparseLu, KnowsTheSignOfTheDeterminant) {
+  SparseLu lu;
+  for (const double last : {-2.0, 2.0}) {
+    Eigen::MatrixXd dense = Eigen::MatrixXd::Identity(3, 3);
+    dense(2, 2) = last;
+    ASSERT_EQ(lu.factorise(Eigen::SparseMatrix<double>(dense.sparseView())), LuOutcome::ok);
+    EXPECT_EQ(lu.determinant_sign(), last > 0.0 ? 1 : -1);
+  }
+}
+
+TEST(SparseCholesky, AgreesWithOurFactorInSolutionAndInertia) {
+  for (const double sign : {-1.0, 1.0}) {
+    test::BoxProblem problem;
+    problem.cells = {6, 5, 4};
+    problem.bulk_modulus = 1000.0;
+    problem.potential_sign = sign;
+    const SymmetricBlockPattern pattern = test::box_pattern(problem);
+    const NodeMask mask = test::box_mask(problem);
+    SymmetricBlockMatrix matrix = test::box_matrix(problem, pattern);
+    matrix.constrain(mask, 1.0);
+    const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(pattern.n_rows(), 1.0, -2.0).array().sin();
+    const LdltAnalysis analysis(pattern, mask);
+    SparseLdlt ldlt(analysis);
+    const LdltOutcome outcome = ldlt.factorise(matrix);
+    ASSERT_TRUE(outcome.ok);
+    Eigen::VectorXd y = b;
+    ldlt.solve(y);
+    // Tried as a definite one first, which the quasi-definite matrix is not.
+    for (const bool definite : {true, false}) {
+      SparseCholesky cholesky;
+      ASSERT_TRUE(cholesky.factorise(full_matrix(matrix), definite));
+      EXPECT_EQ(cholesky.n_negative(), outcome.n_negative);
+      Eigen::VectorXd x(b.size());
+      cholesky.solve(b, x);
+      EXPECT_LT((x - y).norm(), 1e-11 * y.norm()) << "condition number about 1e5";
+    }
+  }
+}
+
+TEST(SparseCholesky, SaysThatAMatrixIsSingular) {
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Identity(3, 3);
+  dense(2, 2) = 0.0;
+  SparseCholesky cholesky;
+  EXPECT_FALSE(cholesky.factorise(Eigen::SparseMatrix<double>(dense.sparseView(0.0, -1.0)), true));
 }
 
 }  // namespace

@@ -135,7 +135,7 @@ TEST(SolidMotion, CellsInvertedAtTheEndOfAStepAreReported) {
                           "      - {where: y+, displacement: [0, {table: [[0, 0], [0.1, -2.5]]}, 0]}\n",
                           "dynamics: {duration: 0.1, step: 0.1}\n", "[1, 1, 1]"));
   ASSERT_EQ(run.warnings().size(), 1U);
-  EXPECT_EQ(run.warnings()[0], "at t = 0.1: solid 'cube': cell 0 is inverted (det F -0.25)");
+  EXPECT_EQ(run.warnings()[0], "at t = 0.1 ms: solid 'cube': cell 0 at [0, 0, 0] is inverted (det F -0.25)");
 }
 
 TEST(SolidMotion, ASolidThatInvertsSaysSo) {
@@ -145,7 +145,7 @@ TEST(SolidMotion, ASolidThatInvertsSaysSo) {
                           "dynamics: {duration: 1, step: 0.1}\n", "[1, 1, 1]"));
   EXPECT_EQ(run.outcome().status, variational::Status::inverted_element);
   EXPECT_EQ(variational::name_of(run.outcome().status), "inverted_element");
-  EXPECT_NE(run.outcome().sentence.find("solid 'cube': cell 0 is inverted"), std::string::npos)
+  EXPECT_NE(run.outcome().sentence.find("solid 'cube': cell 0 at [0, 0, 0] is inverted"), std::string::npos)
       << run.outcome().sentence;
 }
 

@@ -102,8 +102,9 @@ TEST(Starter, RefusesUnknownKinds) {
     starter("soild");
     ADD_FAILURE() << "no error";
   } catch (const base::InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "error: no starter scene 'soild' (did you mean 'solid'?); known: joint, muscle, trunk, solid");
+    EXPECT_STREQ(
+        error.what(),
+        "error: no starter scene 'soild' (did you mean 'solid'?); known: joint, muscle, trunk, solid, optimal");
   }
 }
 

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "scene/read_scene.hpp"
+#include "scene/reference.hpp"
 #include "scene/yaml.hpp"
 
 namespace muldi::scene {
@@ -32,6 +33,29 @@ TEST(Schema, FileIsFresh) {
   std::ostringstream text;
   text << file.rdbuf();
   EXPECT_EQ(text.str(), schema_text()) << "write it anew: muldi-sim schema > schemas/scene.schema.json";
+}
+
+TEST(Reference, PageIsFresh) {
+  std::ifstream file(std::string(MULDI_SOURCE_DIR) + "/schemas/SCENE.md");
+  std::ostringstream text;
+  text << file.rdbuf();
+  EXPECT_EQ(text.str(), reference_text()) << "write it anew: muldi-sim schema --markdown > schemas/SCENE.md";
+}
+
+TEST(Reference, HasEveryKeyOnce) {
+  const std::string text = reference_text();
+  for (const DocumentedField& field : documented_fields()) {
+    if (field.path.starts_with("where")) continue;
+    const std::string row = "\n| `" + field.path + "` | ";
+    const std::size_t first = text.find(row);
+    ASSERT_NE(first, std::string::npos) << field.path;
+    EXPECT_EQ(text.find(row, first + 1), std::string::npos) << field.path;
+  }
+  EXPECT_NE(
+      text.find("| `materials.<name>.elastic.poisson` | Poisson's ratio; 0.5 is incompressible | number, > -1 and "
+                "<= 0.5 |  |  |\n"),
+      std::string::npos);
+  EXPECT_NE(text.find("- `revolute`: one rotation about an axis; coordinate: angle\n"), std::string::npos);
 }
 
 TEST(Schema, DescribesFieldsWithUnitsRangesAndDefaults) {
