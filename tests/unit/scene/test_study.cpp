@@ -31,7 +31,7 @@ class TextFile {
 
 /// All that the reader says, the file's name left out.
 template <class Read>
-std::string errors_of(const Read& read, const std::string& text) {
+std::string mistakes_in(const Read& read, const std::string& text) {
   const TextFile file(text);
   try {
     static_cast<void>(read(file.path()));
@@ -46,7 +46,7 @@ std::string errors_of(const Read& read, const std::string& text) {
 }
 
 TEST(SweepStudy, ReportsAllMistakesAtOnceWithPlaceAndCure) {
-  const std::string errors = errors_of(read_sweep_study,
+  const std::string errors = mistakes_in(read_sweep_study,
                                        "sweep: 1\n"
                                        "scene: joint.yaml\n"
                                        "desing: grid\n"
@@ -68,22 +68,22 @@ TEST(SweepStudy, ReportsAllMistakesAtOnceWithPlaceAndCure) {
 }
 
 TEST(SweepStudy, AsksForWhatADesignNeeds) {
-  EXPECT_EQ(errors_of(read_sweep_study,
+  EXPECT_EQ(mistakes_in(read_sweep_study,
                       "sweep: 1\nscene: s.yaml\ndesign: lhs\nvary: {a.b: [1, 2]}\noutputs: {x: \"time[-1]\"}\n"),
             "f:1:1: error: missing key 'samples' (of design: lhs)\n"
             "f:4:8: error: vary.a.b: needs {min, max}, as every key of design: lhs");
-  EXPECT_EQ(errors_of(read_sweep_study,
+  EXPECT_EQ(mistakes_in(read_sweep_study,
                       "sweep: 1\nscene: s.yaml\ndesign: list\nvary: {a.b: [1, 2], a.c: [1, 2, 3]}\noutputs: {x: t}\n"),
             "f:4:21: error: vary.a.c: has 3 values, the keys before 2: design: list needs as many of each");
 }
 
 TEST(SweepStudy, IsNoScene) {
-  EXPECT_EQ(errors_of(read_sweep_study, "muldi: 1\n"),
+  EXPECT_EQ(mistakes_in(read_sweep_study, "muldi: 1\n"),
             "f:1:1: error: needs a map that starts with 'sweep: 1', got a map");
 }
 
 TEST(CalibrateStudy, AsksForTheColumnOfATable) {
-  EXPECT_EQ(errors_of(read_calibrate_study,
+  EXPECT_EQ(mistakes_in(read_calibrate_study,
                       "calibrate: 1\nscene: s.yaml\nreference: d.csv\n"
                       "fit: {a.b: {min: 1}}\n"
                       "compare:\n  joints.j.coordinate: {unit: parsecs, wieght: 1}\n"),
