@@ -47,15 +47,15 @@ std::string mistakes_in(const Read& read, const std::string& text) {
 
 TEST(SweepStudy, ReportsAllMistakesAtOnceWithPlaceAndCure) {
   const std::string errors = mistakes_in(read_sweep_study,
-                                       "sweep: 1\n"
-                                       "scene: joint.yaml\n"
-                                       "desing: grid\n"
-                                       "vary:\n"
-                                       "  a.b: {linspce: [0, 1, 3]}\n"
-                                       "  a.c: {linspace: [0, 1]}\n"
-                                       "  a.d: []\n"
-                                       "  a.e: {min: 0, max: 1}\n"
-                                       "outputs: {x y: time}\n");
+                                         "sweep: 1\n"
+                                         "scene: joint.yaml\n"
+                                         "desing: grid\n"
+                                         "vary:\n"
+                                         "  a.b: {linspce: [0, 1, 3]}\n"
+                                         "  a.c: {linspace: [0, 1]}\n"
+                                         "  a.d: []\n"
+                                         "  a.e: {min: 0, max: 1}\n"
+                                         "outputs: {x y: time}\n");
   EXPECT_EQ(
       errors,
       "f:3:1: error: desing: unknown key (did you mean 'design'?)\n"
@@ -69,12 +69,13 @@ TEST(SweepStudy, ReportsAllMistakesAtOnceWithPlaceAndCure) {
 
 TEST(SweepStudy, AsksForWhatADesignNeeds) {
   EXPECT_EQ(mistakes_in(read_sweep_study,
-                      "sweep: 1\nscene: s.yaml\ndesign: lhs\nvary: {a.b: [1, 2]}\noutputs: {x: \"time[-1]\"}\n"),
+                        "sweep: 1\nscene: s.yaml\ndesign: lhs\nvary: {a.b: [1, 2]}\noutputs: {x: \"time[-1]\"}\n"),
             "f:1:1: error: missing key 'samples' (of design: lhs)\n"
             "f:4:8: error: vary.a.b: needs {min, max}, as every key of design: lhs");
-  EXPECT_EQ(mistakes_in(read_sweep_study,
-                      "sweep: 1\nscene: s.yaml\ndesign: list\nvary: {a.b: [1, 2], a.c: [1, 2, 3]}\noutputs: {x: t}\n"),
-            "f:4:21: error: vary.a.c: has 3 values, the keys before 2: design: list needs as many of each");
+  EXPECT_EQ(
+      mistakes_in(read_sweep_study,
+                  "sweep: 1\nscene: s.yaml\ndesign: list\nvary: {a.b: [1, 2], a.c: [1, 2, 3]}\noutputs: {x: t}\n"),
+      "f:4:21: error: vary.a.c: has 3 values, the keys before 2: design: list needs as many of each");
 }
 
 TEST(SweepStudy, IsNoScene) {
@@ -84,9 +85,9 @@ TEST(SweepStudy, IsNoScene) {
 
 TEST(CalibrateStudy, AsksForTheColumnOfATable) {
   EXPECT_EQ(mistakes_in(read_calibrate_study,
-                      "calibrate: 1\nscene: s.yaml\nreference: d.csv\n"
-                      "fit: {a.b: {min: 1}}\n"
-                      "compare:\n  joints.j.coordinate: {unit: parsecs, wieght: 1}\n"),
+                        "calibrate: 1\nscene: s.yaml\nreference: d.csv\n"
+                        "fit: {a.b: {min: 1}}\n"
+                        "compare:\n  joints.j.coordinate: {unit: parsecs, wieght: 1}\n"),
             "f:4:12: error: fit.a.b: missing key 'max'\n"
             "f:6:3: error: compare.joints.j.coordinate: missing key 'column': the reference is a CSV file\n"
             "f:6:3: error: compare.joints.j.coordinate: no unit 'parsecs'\n"
