@@ -111,6 +111,9 @@ class File {
   static File create(const std::string& path);
   /// Opens a file. For reading: also one that is being written. For writing: also one whose writer was killed.
   static File open(const std::string& path, Access access);
+  /// Moves the end that the header states to that of the file: a writer that was killed between the two has left rows
+  /// beyond it.
+  void own_all_bytes();
 
   DataSet create_rows(const ChannelSpec& spec, RowStorage storage);
   /// Makes a data set of fixed size; large ones are compressed unless they are to be overwritten in place.

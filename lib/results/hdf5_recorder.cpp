@@ -97,6 +97,7 @@ void Hdf5Recorder::open_to_resume() {
   live_ = LiveFile(output_.path);
   live_.open_to_readers(0);
   file_ = hdf5::File::open(output_.path, hdf5::Access::write);
+  file_.own_all_bytes();
   live_.open_to_readers(0);
 }
 

@@ -39,8 +39,7 @@ void ExactResponses::respond(const VolumeRows& rows, SolidLinear& linear, const 
   linear.solve_columns(x);
 }
 
-bool ExactResponses::keep_volumes(const VolumeRows& rows, SolidLinear& linear, double accuracy, int most,
-                                  Eigen::MatrixXd& W, Eigen::MatrixXd& P) {
+bool ExactResponses::keep_volumes(const VolumeRows& rows, SolidLinear& linear, Eigen::MatrixXd& W, Eigen::MatrixXd& P) {
   const int block = linear.matrix().block_size();
   const Eigen::Index n_columns = W.cols();
   x_.resize(W.rows(), n_columns);
@@ -48,9 +47,9 @@ bool ExactResponses::keep_volumes(const VolumeRows& rows, SolidLinear& linear, d
   project(rows, block, W, r_);
   P.setZero();
   d_.setZero();
-  const Eigen::VectorXd wanted = accuracy * r_.colwise().norm();
+  const Eigen::VectorXd wanted = rows.relative_accuracy * r_.colwise().norm();
   Eigen::VectorXd before = Eigen::VectorXd::Ones(n_columns);
-  for (int iteration = 0; iteration < most; ++iteration) {
+  for (int iteration = 0; iteration < rows.most_iterations; ++iteration) {
     bool done = true;
     for (Eigen::Index j = 0; j < n_columns; ++j) {
       // A column that is done stays as it is.

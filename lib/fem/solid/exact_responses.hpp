@@ -16,15 +16,17 @@ struct VolumeRows {
   const Eigen::VectorXd& compliance;
   /// Part of the compliance that stays, which bounds pressures with hardly any force.
   double proximal = 0.0;
+  /// Of the rows, and the iterations after which they are given up.
+  double relative_accuracy = 0.0;
+  int most_iterations = 0;
 };
 
 class ExactResponses {
  public:
   /// W: solutions of the augmented equations, in blocks of the factor; takes the motion out of them that changes
-  /// volumes, and writes the pressures P which do that, to a relative accuracy. False if the volume rows are not
-  /// positive definite, as beyond a loss of stability, or not done in `most` iterations; W and P are then useless.
-  bool keep_volumes(const VolumeRows& rows, SolidLinear& linear, double accuracy, int most, Eigen::MatrixXd& W,
-                    Eigen::MatrixXd& P);
+  /// volumes, and writes the pressures P which do that. False if the volume rows are not positive definite, as beyond a
+  /// loss of stability, or not done in time; W and P are then useless.
+  bool keep_volumes(const VolumeRows& rows, SolidLinear& linear, Eigen::MatrixXd& W, Eigen::MatrixXd& P);
 
  private:
   /// out = c B x, and x = A^-1 B^T c p.

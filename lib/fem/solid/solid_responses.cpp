@@ -39,9 +39,10 @@ bool SolidSolver::keep_volumes_exactly() {
                                         .volumes = lagged_,
                                         .coupling = coupling_,
                                         .compliance = compliance_,
-                                        .proximal = proximal},
-                                       *linear_, refined_column, max_refinements, responses_.displacements(),
-                                       responses_.pressures());
+                                        .proximal = proximal,
+                                        .relative_accuracy = refined_column,
+                                        .most_iterations = max_refinements},
+                                       *linear_, responses_.displacements(), responses_.pressures());
 }
 
 /// Column by column, also beyond a loss of stability.
