@@ -8,7 +8,9 @@
 #include <array>
 #include <bit>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <thread>
 #include <utility>
 
 #include "base/error.hpp"
@@ -74,6 +76,20 @@ std::optional<Bytes> read_bytes(int descriptor) {
   return bytes;
 }
 
+/// Locks the file against all others; false if another process keeps it for long. A reader that tries to open a file
+/// which is just coming into being holds a lock for the moment of its attempt, and is waited for.
+bool lock_out_others(int descriptor) {
+  using namespace std::chrono_literals;
+  const auto end = std::chrono::steady_clock::now() + 500ms;
+  while (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+    // File systems without locks are written without one.
+    if (errno != EWOULDBLOCK) return true;
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(1ms);
+  }
+  return true;
+}
+
 std::uint64_t size_of(int descriptor) {
   struct stat status {};
   return ::fstat(descriptor, &status) == 0 ? static_cast<std::uint64_t>(status.st_size) : 0;
@@ -115,8 +131,7 @@ LiveFile::LiveFile(const std::string& path) : path_(path) {
   descriptor_ = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
   if (descriptor_ < 0) throw base::EnvironmentError("cannot write '" + path + "': " + std::strerror(errno));
   // Exclusive first, to find another writer; then shared, so that readers which lock (h5py does) get in.
-  // File systems without locks are written without one.
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+  if (!lock_out_others(descriptor_)) {
     ::close(std::exchange(descriptor_, -1));
     throw base::InputError("'" + path + "' is in use by another process");
   }
