@@ -104,6 +104,20 @@ void TimeLoop::record(const LoopCallbacks& callbacks, const State& state, const 
                     .last = reactions.last});
 }
 
+model::NodeView view_of(const NodeRecord& node) {
+  return {.serial = node.step,
+          .t = node.t,
+          .x = node.state.x,
+          .rate = node.values.rate,
+          .q = node.state.q,
+          .v = node.values.v,
+          .constraint_force = node.constraint_force,
+          .multipliers = node.multipliers,
+          .y = node.state.y,
+          .u = node.u,
+          .y_after = &node.y_after};
+}
+
 void TimeLoop::record_end(const LoopCallbacks& callbacks, const State& state, Ledger& ledger, const StepReport& last) {
   // At the last node there is no following step. The reactions are those that make its momentum consistent with the
   // constraints: p_N - (dt/2) G^T lambda_N = M v_N.

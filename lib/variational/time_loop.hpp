@@ -2,6 +2,7 @@
 /// Runs a model from a state over a number of steps and hands every node to an observer, with the energy ledger.
 #include <functional>
 
+#include "model/observable.hpp"
 #include "variational/node_values.hpp"
 #include "variational/stepper.hpp"
 
@@ -38,6 +39,9 @@ struct NodeRecord {
   const StepReport& report;                 ///< of the step that ends here
   bool last = false;                        ///< no step follows
 };
+
+/// What observables see of the node; its serial number is the step.
+model::NodeView view_of(const NodeRecord& node);
 
 enum class Integrator { midpoint, explicit_scheme };
 
