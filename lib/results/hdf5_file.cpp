@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/special_file.hpp"
 #include "results/live_file.hpp"
 
 namespace muldi::results::hdf5 {
@@ -256,6 +257,7 @@ File File::open(const std::string& path, Access access) {
     file.id_ = Id(file.check(H5Fopen(path.c_str(), write, properties.get()), ""));
     return file;
   }
+  if (base::is_special_file(path)) throw base::InputError("cannot read '" + path + "': not a regular file");
   if (H5Fis_hdf5(path.c_str()) == 0) throw base::InputError("cannot read '" + path + "': not an HDF5 file");
   check_whole(path);
   // The library doubles its wait between two attempts: its default of 100 would never end on a damaged file.

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "statics/sweep.hpp"
-#include "support/solid_system.hpp"
+#include "support/solid_cubes.hpp"
 #include "variational/stepper.hpp"
 
 namespace muldi::fem {
@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double mu = 0.233;
+constexpr double mu = test::cube_mu;
 
 double lambda_of(double nu) { return 2.0 * mu * nu / (1.0 - 2.0 * nu); }
 
@@ -168,11 +168,9 @@ TEST(SolidLimits, ABlowTooHardForTheStepInvertsCells) {
   }
 }
 
-bool on_wall(const Vector3d& X) { return X.minCoeff() < 1e-9 || X.maxCoeff() > 1.0 - 1e-9; }
-
 /// A cube with all its walls held, pushed inside.
 test::SolidSystem clamped(test::SolidSystem system, double load) {
-  for (int i = 0; i < 3; ++i) system.hold(on_wall, i);
+  for (int i = 0; i < 3; ++i) system.hold(test::on_wall, i);
   const std::vector<int> inside =
       system.nodes([](const Vector3d& X) { return (X.array() - 0.5).matrix().norm() < 0.15; });
   system.solid.dead_loads.push_back({.nodes = {inside.at(0)}, .unit = {{1, 2, 3}}, .value = {.constant = load}});
@@ -191,7 +189,7 @@ void expect_finite_pressures(const test::SolidSystem& system, double load) {
   EXPECT_LT(solid.pressures(rest.y).lpNorm<Eigen::Infinity>(), 600.0 * load);
   EXPECT_LT((solid.volumes_at(rest.q).J.array() - 1.0).abs().maxCoeff(), 1e-12);
   solver.linearise(rest, {});
-  for (const int n : system.nodes([](const Vector3d& X) { return !on_wall(X); })) {
+  for (const int n : system.nodes([](const Vector3d& X) { return !test::on_wall(X); })) {
     EXPECT_LT(solver.force().segment<3>(3 * n).norm(), 1e-6 * load);
   }
 }
