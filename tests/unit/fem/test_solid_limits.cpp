@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "statics/sweep.hpp"
+#include "support/figure.hpp"
 #include "support/solid_cubes.hpp"
 #include "variational/stepper.hpp"
 
@@ -103,6 +104,8 @@ TEST(SolidLimits, ALoadTooLargeForOneStepLeavesTheStateAndIsReported) {
       statics::EquilibriumSolver(*model, {}).solve(state, std::vector<double>{1e3});
   EXPECT_FALSE(report.converged);
   EXPECT_TRUE(state.q == start);
+  test::record_figure("10", "state after a refused step into inverted cells, difference from its start (mm)",
+                      (state.q - start).lpNorm<Eigen::Infinity>(), 0.0);
 
   statics::Sweep sweep(*model, {0.0}, {1.0}, {.from = 1e3, .to = 2e3, .steps = 2});
   const statics::SweepResult result = sweep.run(state, {});
