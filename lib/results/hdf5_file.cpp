@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/special_file.hpp"
 #include "results/live_file.hpp"
 
 namespace muldi::results::hdf5 {
@@ -256,13 +257,13 @@ File File::open(const std::string& path, Access access) {
     file.id_ = Id(file.check(H5Fopen(path.c_str(), write, properties.get()), ""));
     return file;
   }
+  if (base::is_special_file(path)) throw base::InputError("cannot read '" + path + "': not a regular file");
   if (H5Fis_hdf5(path.c_str()) == 0) throw base::InputError("cannot read '" + path + "': not an HDF5 file");
   check_whole(path);
   // The library doubles its wait between two attempts: its default of 100 would never end on a damaged file.
   H5Pset_metadata_read_attempts(properties.get(), swmr_attempts);
   const unsigned swmr = H5F_ACC_RDONLY | H5F_ACC_SWMR_READ;
-  // Plain readers are kept out of a file, or of its last rows, whose writer was killed at a bad moment; SWMR readers of
-  // an older format.
+  // Plain readers are kept out where the writer was killed at a bad moment; SWMR readers of an older format.
   file.id_ = Id(H5Fopen(path.c_str(), swmr, properties.get()));
   if (!file.id_.valid()) file.id_ = Id(file.check(H5Fopen(path.c_str(), H5F_ACC_RDONLY, properties.get()), ""));
   return file;

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/special_file.hpp"
 
 namespace muldi::results {
 namespace {
@@ -123,6 +124,7 @@ void check_whole(const std::string& path) {
 }
 
 void remove_stale_mark(const std::string& path) {
+  if (base::is_special_file(path)) return;
   const auto superblock = read_superblock(path);
   if (superblock && superblock->marked) LiveFile(path).open_to_readers(0);
 }

@@ -9,6 +9,7 @@ from program import SCENES, ProgramTest, attribute, data_sets, values
 
 PENDULUM = SCENES / "pendulum.yaml"
 TRUNK = SCENES / "elephant_trunk_lumped.yaml"
+SHORT = ["--set", "dynamics.duration=50 ms"]
 
 
 class Names(ProgramTest):
@@ -76,6 +77,31 @@ class Unwritable(ProgramTest):
             for option in ([], ["--force"]):
                 message = self.message("run", PENDULUM, "-o", path, *option, code=4)
                 self.assertEqual(message, f"error: cannot write '{path}': not a regular file")
+
+    def test_pipes_and_devices_are_never_written(self):
+        for name in ("a.h5", "a.svg", "a.html", "a.yaml", "a.sh", "a.xdmf"):
+            os.mkfifo(self.folder / name)
+        self.program("run", PENDULUM, "-o", "b.h5", "--no-paraview", *SHORT)
+        fit = SCENES / "studies" / "kofod_permittivity.yaml"
+        sweep = SCENES / "studies" / "joint_sweep.yaml"
+        for path, *arguments in (("a.svg", "plot", "b.h5", "-o"), ("a.html", "report", "b.h5", "-o"), ("a.yaml", "new", "--force", "-o"),
+                                 ("a.yaml", "calibrate", fit, "--force", "-o"), ("a.h5", "calibrate", fit, "--force", "--results"),
+                                 ("a.h5", "sweep", sweep, "--force", "-o"), ("a.sh", "sweep", sweep, "--jobs", 2, "--force", "--slurm"),
+                                 ("a.h5", "run", PENDULUM, "--force", "-o"), ("/dev/full", "new", "--force", "-o")):
+            with self.subTest(path=path, verb=arguments[0]):
+                self.assertEqual(self.message(*arguments, path, code=4), f"error: cannot write '{path}': not a regular file")
+        self.program("run", PENDULUM, "-o", "c.h5", *SHORT)
+        os.rename(self.folder / "a.xdmf", self.folder / "c.xdmf.pipe")
+        (self.folder / "c.xdmf").unlink()
+        os.rename(self.folder / "c.xdmf.pipe", self.folder / "c.xdmf")
+        self.assertEqual(self.message("paraview", "c.h5", code=4), "error: cannot write 'c.xdmf': not a regular file")
+
+    def test_pipes_and_devices_are_no_results(self):
+        os.mkfifo(self.folder / "a.h5")
+        for path in ("a.h5", "/dev/zero"):
+            for arguments in (["info", path], ["compare", path, path], ["plot", path], ["report", path], ["paraview", path], ["run", PENDULUM, "--resume", path]):
+                with self.subTest(path=path, verb=arguments[0]):
+                    self.assertEqual(self.message(*arguments, code=2), f"error: cannot read '{path}': not a regular file")
 
 
 class FullDisk(ProgramTest):
