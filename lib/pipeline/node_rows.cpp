@@ -132,7 +132,8 @@ void NodeRows::write(const variational::NodeRecord& node) {
                              .multipliers = node.multipliers,
                              .y = node.state.y,
                              .u = node.u,
-                             .y_after = &node.y_after};
+                             .y_after = &node.y_after,
+                             .accounts = node.ledger.supply};
   write_common(view, node.values.parts);
   const double total = node.values.total.kinetic + node.values.total.potential();
   const variational::Ledger& ledger = node.ledger;
