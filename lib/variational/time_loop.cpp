@@ -25,7 +25,9 @@ TimeLoop::TimeLoop(const model::Model& model, LoopOptions options)
       supply_(model),
       looks_(first_look),
       u_before_(model.controls.size()),
-      u_(model.controls.size()) {}
+      u_(model.controls.size()) {
+  values_.v = Eigen::VectorXd::Zero(model.n_q());
+}
 
 void TimeLoop::controls_of(const State& state) {
   const double middle = 0.5 * options_.dt;
@@ -95,6 +97,7 @@ LoopResult TimeLoop::run(State& state, Ledger& ledger, StepReport& last, const L
 }
 
 void TimeLoop::book_supply(const State& state, Ledger& ledger) {
+  // Charges depend on positions and controls: velocities may be those of an earlier node.
   const auto view = [&](const std::vector<double>& u) {
     return model::NodeView{.serial = looks_--,
                            .t = state.t,
@@ -102,7 +105,7 @@ void TimeLoop::book_supply(const State& state, Ledger& ledger) {
                            .rate = values_.rate,
                            .q = state.q,
                            .v = values_.v,
-                           .constraint_force = end_force_,
+                           .constraint_force = values_.v,
                            .multipliers = state.multipliers,
                            .y = state.y,
                            .u = u};

@@ -155,7 +155,7 @@ SceneRun moving(const std::string& record) {
   return SceneRun(
       cube("viscous: {model: kelvin_voigt, viscosity: 0.05}, " + dielectric,
            on_rollers + two_electrodes + "      middle: {where: {plane: {y: 0}}, charge: 1.0e-7}\n",
-           supply("{sine: {amplitude: 30 kV, frequency: 0.1}}") + "dynamics: {duration: 8, step: 0.1}\n" + record));
+           supply("{sine: {amplitude: 100 kV, frequency: 0.1}}") + "dynamics: {duration: 8, step: 0.1}\n" + record));
 }
 
 TEST(SuppliedEnergy, ClosesTheLedgerOfAMotionAsTheBalanceOfTheEnthalpyDoes) {
