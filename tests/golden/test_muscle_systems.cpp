@@ -146,7 +146,7 @@ TEST(RevoluteJointTwin, RecordsTheSameElectricFiguresOfBothModels) {
     EXPECT_NEAR(fe.rows("statics/muscles/upper/" + what)(0, row), wanted, within * std::abs(wanted)) << what;
   };
   both("capacitance", 0, 1e-12);  // of the undeformed muscle
-  both("charge", 6, 0.01);  // its ends are held
+  both("charge", 6, 0.01);        // its ends are held
   both("capacitance", 6, 0.01);
   both("stored_energy", 6, 0.01);
   both("supplied_energy", 6, 0.01);

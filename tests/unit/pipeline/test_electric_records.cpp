@@ -140,7 +140,7 @@ TEST(SuppliedEnergy, CountsPotentialsWithoutANameInTheSum) {
 TEST(SuppliedEnergy, OfAGivenChargeIsThatOfTheChargedCapacitor) {
   const std::string steps = "{steps: [[0, ";  // a function of time, which statics scale
   for (const std::string& charged : {"    electrodes:\n      high: {where: y+, charge: " + steps + "8.0e-7]]}}\n",
-                                    "      - {where: y+, surface_charge: " + steps + "2.0e-7]]}}\n"}) {
+                                     "      - {where: y+, surface_charge: " + steps + "2.0e-7]]}}\n"}) {
     const SceneRun run(cube(dielectric, rigid + "      - {where: y-, potential: 0}\n" + charged,
                             "statics: {steps: 3}\nrecord: {electric: [stored_energy, supplied_energy]}\n"));
     ASSERT_TRUE(run.outcome().completed()) << run.outcome().sentence;
