@@ -152,6 +152,7 @@ BuiltModel build_model(const scene::Scene& scene) {
   add_loads(context);
   add_solids(context);
   add_meshed_muscles(context);
+  model::add_supply_totals(electric_record(scene), *built.model);
   add_field_histories(scene, built);
   built.model->controls = controls.take();
   built.model->bind();

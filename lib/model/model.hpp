@@ -11,6 +11,7 @@
 #include "model/manifold.hpp"
 #include "model/observable.hpp"
 #include "model/substructure.hpp"
+#include "model/terminal.hpp"
 
 namespace muldi::model {
 
@@ -30,6 +31,8 @@ struct Model {
   std::vector<Control> controls;
   std::vector<Observable> observables;
   std::vector<FieldHistory> histories;
+  std::vector<Terminal> terminals = {};  ///< of the sources, where a scene records their energies
+  bool books_supply = false;             ///< runs keep accounts of what the terminals are supplied with
 
   /// Requests the pattern of all terms and binds them, places the slices of the substructures; call once, after the
   /// last of them.

@@ -35,6 +35,7 @@ EquilibriumRows::EquilibriumRows(results::Recorder& recorder, const scene::Scene
       last_load_(scene.statics->control ? *scene.statics->to : 1.0),
       rows_(recorder, scene, built, NodeRows::Kind::statics, static_cast<std::size_t>(scene.statics->steps) + 1),
       parts_(built.model->parts().size()),
+      supply_(*built.model),
       zero_q_(Eigen::VectorXd::Zero(built.model->n_q())),
       zero_v_(Eigen::VectorXd::Zero(built.manifold->n_v())),
       constraint_force_(zero_q_) {}
@@ -44,15 +45,15 @@ void EquilibriumRows::write(const statics::SweepPoint& point) {
   built_.model->energies({.x = x, .q = point.q, .v = zero_q_, .u = point.u}, parts_);
   constraint_force_ = -point.force;
   for (const auto& part : built_.model->substructures) part->gather(constraint_force_);
-  const model::NodeView view{.t = point.load,
-                             .x = point.state.x,
-                             .rate = zero_v_,
-                             .q = point.q,
-                             .v = zero_q_,
-                             .constraint_force = constraint_force_,
-                             .multipliers = point.state.multipliers,
-                             .y = point.y,
-                             .u = point.u};
+  model::NodeView view{.t = point.load,
+                       .x = point.state.x,
+                       .rate = zero_v_,
+                       .q = point.q,
+                       .v = zero_q_,
+                       .constraint_force = constraint_force_,
+                       .multipliers = point.state.multipliers,
+                       .y = point.y,
+                       .u = point.u};
   least_stretched_.clear();
   model::NodeView look = view;
   look.serial = looks_--;  // below those of the records
@@ -63,6 +64,14 @@ void EquilibriumRows::write(const statics::SweepPoint& point) {
     if (!least_stretched_.empty() && stretch >= least_stretch_) continue;
     least_stretch_ = stretch;
     least_stretched_ = observable.path.substr(8, observable.path.size() - 16);
+  }
+  if (supply_.is_kept()) {
+    if (accounts_.empty()) {
+      supply_.open(look, accounts_);
+    } else {
+      supply_.change(look, accounts_);
+    }
+    view.accounts = accounts_;
   }
   rows_.write({.load = point.load,
                .stable = point.report.stability == statics::Stability::stable,

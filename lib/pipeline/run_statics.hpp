@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "build/built_model.hpp"
+#include "model/supply.hpp"
 #include "pipeline/node_rows.hpp"
 #include "pipeline/outcome.hpp"
 #include "pipeline/run_context.hpp"
@@ -34,6 +35,8 @@ class EquilibriumRows {
   NodeRows rows_;
   std::vector<model::Energy> parts_;
   long looks_ = -2;
+  model::SupplyBook supply_;
+  std::vector<double> accounts_;
   double least_stretch_ = 0.0;
   std::string least_stretched_;
   Eigen::VectorXd zero_q_;

@@ -12,6 +12,15 @@ RUNS = {
     "closed and redundant": ("four_bar.yaml", ["dynamics.duration=20 s"]),
     "closed, springs, a row in 7 steps": ("slider_crank.yaml", ["dynamics.duration=21 s", "record.every=7"]),
     "isolated actuator": ("membrane_lumped.yaml", ["dynamics.duration=3000", "record.every=5"]),
+    "accounts of the supply": (
+        "energy_harvester.yaml",
+        [
+            "dynamics.duration=30 s",
+            "record.every=3",
+            "controls.supply.layer_voltage={sine: {amplitude: 300, frequency: 0.02}}",
+            "materials.silicone.viscous={model: kelvin_voigt, viscosity: 0.05}",
+        ],
+    ),
     "free tree, a row in 30 steps": ("tree.yaml", ["dynamics.duration=20 s", "record.every=30"]),
 }
 
