@@ -11,6 +11,8 @@ import matplotlib.lines  # noqa: E402  after the choice of what draws
 import matplotlib.pyplot as pyplot  # noqa: E402
 import matplotlib.ticker  # noqa: E402
 
+import study_figures  # noqa: E402
+
 # Okabe and Ito: told apart by everyone, also in grey.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999")
 DASHES = ("-", (0, (4, 1.5)), (0, (1, 1)), (0, (5, 1, 1, 1)), (0, (3, 1, 1, 1, 1, 1)))
@@ -64,7 +66,7 @@ def styles_of(panel):
     sources = list(dict.fromkeys(curve.source for curve in panel.curves))
 
     def style(curve):
-        name, source = names.index(curve.name), sources.index(curve.source)
+        name, source = names.index(curve.name) + panel.first_colour, sources.index(curve.source)
         if len(names) == 1:
             return COLOURS[source % len(COLOURS)], DASHES[source % len(DASHES)]
         return COLOURS[name % len(COLOURS)], DASHES[(source if len(sources) > 1 else name // len(COLOURS)) % len(DASHES)]
@@ -72,7 +74,8 @@ def styles_of(panel):
     styles = [style(curve) for curve in panel.curves]
     if len(names) == 1 or len(sources) == 1:
         labels = [curve.source if len(names) == 1 else curve.name for curve in panel.curves]
-        return styles, [line(*each, label) for each, label in zip(styles, labels)] if len(labels) > 1 or panel.markers else []
+        named = len(labels) > 1 or (panel.markers and any(labels))
+        return styles, [line(*each, label) for each, label in zip(styles, labels)] if named else []
     entries = [line(COLOURS[i % len(COLOURS)], "-", name) for i, name in enumerate(names)]
     return styles, entries + [line("#555555", DASHES[i % len(DASHES)], source) for i, source in enumerate(sources)]
 
@@ -109,13 +112,19 @@ def draw_steps(axes, panel):
 
 
 def draw(axes, panel):
+    if panel.grid is not None:
+        study_figures.draw_map(axes, panel)
+        return
+    if panel.intervals is not None:
+        study_figures.draw_intervals(axes, panel, COLOURS)
+        return
     styles, entries = styles_of(panel)
     axes.xaxis.set_major_formatter(Formatter())
     axes.yaxis.set_major_formatter(Formatter())
     unstable = False
     for curve, (colour, dashes) in zip(panel.curves, styles):
-        marker = "o" if panel.markers or len(curve.x) < 12 else None
-        unstable |= draw_curve(axes, curve, colour, dashes, marker, panel.held)
+        marker = "o" if panel.markers or panel.scatter or len(curve.x) < 12 else None
+        unstable |= draw_curve(axes, curve, colour, "none" if panel.scatter else dashes, marker, panel.held)
     if unstable:
         entries.append(line("#555555", (0, (1, 1.2)), "unstable"))
     if panel.zero_line:
@@ -125,6 +134,12 @@ def draw(axes, panel):
         draw_steps(axes, panel)
     if panel.log_y:
         axes.set_yscale("log")
+    if panel.plain_log_x:
+        axes.set_xscale("log")
+    if panel.ticks:
+        axes.set_xticks(range(len(panel.ticks)), panel.ticks)
+    if panel.failed is not None and len(panel.failed):
+        entries.append(study_figures.draw_failed(axes, panel))
     axes.set_title(panel.title)
     axes.set_xlabel(panel.x_label)
     axes.set_ylabel(panel.y_label)
