@@ -37,7 +37,8 @@ class Panel:
     failed: numpy.ndarray = None  # where points of a sweep failed
     grid: object = None  # values over two numbers, in colours
     intervals: list = None  # parameters of a fit
-    first_colour: int = 0
+    colours: list = None  # numbers of colours by name, where these mean something
+    wide_first: bool = False  # the first curve is a wide line under the others
 
 
 class Panels:

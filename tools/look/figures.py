@@ -66,9 +66,11 @@ def styles_of(panel):
     sources = list(dict.fromkeys(curve.source for curve in panel.curves))
 
     def style(curve):
-        name, source = names.index(curve.name) + panel.first_colour, sources.index(curve.source)
+        name, source = names.index(curve.name), sources.index(curve.source)
         if len(names) == 1:
             return COLOURS[source % len(COLOURS)], DASHES[source % len(DASHES)]
+        if panel.colours:
+            return COLOURS[panel.colours[name]], "-"
         return COLOURS[name % len(COLOURS)], DASHES[(source if len(sources) > 1 else name // len(COLOURS)) % len(DASHES)]
 
     styles = [style(curve) for curve in panel.curves]
@@ -113,7 +115,7 @@ def draw_steps(axes, panel):
 
 def draw(axes, panel):
     if panel.grid is not None:
-        study_figures.draw_map(axes, panel)
+        study_figures.draw_map(axes, panel, Formatter())
         return
     if panel.intervals is not None:
         study_figures.draw_intervals(axes, panel, COLOURS)
@@ -125,6 +127,8 @@ def draw(axes, panel):
     for curve, (colour, dashes) in zip(panel.curves, styles):
         marker = "o" if panel.markers or panel.scatter or len(curve.x) < 12 else None
         unstable |= draw_curve(axes, curve, colour, "none" if panel.scatter else dashes, marker, panel.held)
+        if panel.wide_first and curve is panel.curves[0]:
+            axes.lines[-1].set(linewidth=3.5, alpha=0.7)
     if unstable:
         entries.append(line("#555555", (0, (1, 1.2)), "unstable"))
     if panel.zero_line:

@@ -43,6 +43,8 @@ class Map:
     x: numpy.ndarray
     y: numpy.ndarray
     z: numpy.ndarray
+    log_x: bool
+    log_y: bool
 
 
 @dataclasses.dataclass
@@ -143,7 +145,7 @@ def heat_map(sweep, output, x, y):
     columns, rows = x.distinct(), y.distinct()
     z = numpy.full((len(rows), len(columns)), numpy.nan)
     z[numpy.searchsorted(rows, y.values), numpy.searchsorted(columns, x.values)] = output.values
-    return Panel(output.label, x.label, y.label, [], grid=Map(columns, rows, z))
+    return Panel(output.label, x.label, y.label, [], grid=Map(columns, rows, z, log_spread(columns), log_spread(rows)))
 
 
 def scatter(sweep, output, key):
@@ -205,9 +207,9 @@ def calibration_panels(result):
             title = name if values["reference"].shape[1] == 1 else f"{name}[{i}]"
             columns = {what: rows[:, i] for what, rows in values.items()}
             quantity = axis_label(title.rsplit(".", 1)[-1].replace("_", " "), unit)
-            panels.append(Panel(title, x_label, quantity, [Curve(what, "", x, column) for what, column in columns.items()]))
+            panels.append(Panel(title, x_label, quantity, [Curve(what, "", x, column) for what, column in columns.items()], colours=[7, 1, 2], wide_first=True))
             left = [Curve(what, "", x, columns[what] - columns["reference"]) for what in ("before", "after")]
-            panels.append(Panel("Difference from the reference", x_label, axis_label("difference", unit), left, zero_line=True, first_colour=1))
+            panels.append(Panel("Difference from the reference", x_label, axis_label("difference", unit), left, zero_line=True, colours=[1, 2]))
     panels.append(Panel("Parameters with 95 % intervals", "from the lower bound to the upper one", "", [], intervals=intervals_of(result)))
     return panels
 

@@ -6,21 +6,25 @@ import matplotlib.lines
 import numpy
 
 
-def edges(values):
+def edges(values, log):
     """Borders of cells around points that need not be equally far from each other."""
+    if log:
+        return numpy.exp(edges(numpy.log(values), False))
     middle = 0.5 * (values[1:] + values[:-1])
     return numpy.concatenate([[values[0] - (middle[0] - values[0])], middle, [values[-1] + (values[-1] - middle[-1])]])
 
 
-def draw_map(axes, panel):
+def draw_map(axes, panel, formatter):
     """A cell a point; grey where it failed."""
     grid = panel.grid
     axes.set_facecolor("#c8c8c8")
-    image = axes.pcolormesh(edges(grid.x), edges(grid.y), numpy.ma.masked_invalid(grid.z), cmap="viridis", rasterized=True)
+    image = axes.pcolormesh(edges(grid.x, grid.log_x), edges(grid.y, grid.log_y), numpy.ma.masked_invalid(grid.z), cmap="viridis", rasterized=True)
+    axes.set_xscale("log" if grid.log_x else "linear")
+    axes.set_yscale("log" if grid.log_y else "linear")
     axes.grid(False)
-    axes.figure.colorbar(image, ax=axes, pad=0.02)
+    axes.figure.colorbar(image, ax=axes, pad=0.02, format=formatter)
     if not numpy.isfinite(grid.z).all():
-        axes.legend(handles=[matplotlib.lines.Line2D([], [], linestyle="none", marker="s", color="#c8c8c8", label="failed")], loc="upper left", bbox_to_anchor=(0, -0.16))
+        axes.legend(handles=[matplotlib.lines.Line2D([], [], linestyle="none", marker="s", color="#c8c8c8", label="failed")], loc="upper right", bbox_to_anchor=(1, -0.12))
     axes.set_title(panel.title)
     axes.set_xlabel(panel.x_label)
     axes.set_ylabel(panel.y_label)
@@ -69,10 +73,10 @@ def draw_intervals(axes, panel, colours):
     axes.spines["left"].set_visible(False)
     axes.spines["bottom"].set_visible(False)
     axes.set_title(panel.title)
-    axes.set_xlabel(panel.x_label)
+    axes.set_xlabel(panel.x_label, loc="left")
     style = {"linestyle": "none", "marker": "o"}
     handles = [
         matplotlib.lines.Line2D([], [], color=colours[1], markerfacecolor="white", label="start", **style),
         matplotlib.lines.Line2D([], [], color=colours[2], label="fitted", **style),
     ]
-    axes.legend(handles=handles, loc="lower right", bbox_to_anchor=(1, 1), ncol=2, borderaxespad=0)
+    axes.legend(handles=handles, loc="upper right", bbox_to_anchor=(1, 0), ncol=2, borderaxespad=0)
