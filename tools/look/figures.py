@@ -10,6 +10,7 @@ matplotlib.use("Agg")
 import matplotlib.lines  # noqa: E402  after the choice of what draws
 import matplotlib.pyplot as pyplot  # noqa: E402
 import matplotlib.ticker  # noqa: E402
+import matplotlib.transforms  # noqa: E402
 
 import study_figures  # noqa: E402
 
@@ -33,7 +34,9 @@ STYLE = {
     "ytick.major.width": 0.6,
     "lines.linewidth": 1.1,
     "lines.markersize": 3.5,
-    "legend.frameon": False,
+    "legend.frameon": True,  # what lies below is seen as such
+    "legend.framealpha": 0.8,
+    "legend.edgecolor": "none",
     "legend.fontsize": 7,
     "legend.handlelength": 1.8,
     "axes.formatter.limits": (-3, 5),
@@ -51,8 +54,14 @@ class Formatter(matplotlib.ticker.ScalarFormatter):
 
     def get_offset(self):
         offset = super().get_offset().replace("\u2212", "-")
-        power = re.fullmatch(r"1e([+-]?[0-9]+)", offset)
-        return rf"$\times 10^{{{int(power.group(1))}}}$" if power else offset
+        found = re.fullmatch(r"(?:1e([+-]?[0-9]+))?(?:([+-])([0-9.]+)(?:e([+-]?[0-9]+))?)?", offset)
+        if not found:
+            return offset
+        factor, sign, number, power = found.groups()
+        text = rf"\times 10^{{{int(factor)}}}" if factor else ""
+        text += rf"{sign}{number}" if sign else ""
+        text += rf"\times 10^{{{int(power)}}}" if power else ""
+        return f"${text}$" if text else ""
 
 
 def line(colour, dashes, label):
@@ -161,8 +170,10 @@ def add_legend(axes, entries):
     if len(entries) <= 4 and longest <= 22:
         axes.legend(handles=entries, loc="best", borderaxespad=0.2)
     else:
+        # Below the numbers and the label of the axis, however high the axes are.
+        below = axes.transAxes + matplotlib.transforms.ScaledTranslation(0, -34 / 72, axes.figure.dpi_scale_trans)
         columns = 1 if longest > 26 else 2 if longest > 18 else 3 if longest > 12 else 4
-        axes.legend(handles=entries, loc="upper left", bbox_to_anchor=(-0.08, -0.3), ncol=columns, borderaxespad=0, columnspacing=1.2)
+        axes.legend(handles=entries, loc="upper left", bbox_to_anchor=(-0.08, 0), bbox_transform=below, ncol=columns, borderaxespad=0, columnspacing=1.2)
 
 
 def figure_of(panels, columns=None):

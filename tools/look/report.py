@@ -139,6 +139,8 @@ def main():
         return
     if not opened.series:
         raise result.WrongInput(f"'{arguments.file}' holds no rows yet")
+    for series in opened.series:
+        series.label = series.name  # of one file: what differs is what was computed
     pathlib.Path(arguments.output).write_text(page(opened, drawing), encoding="utf-8")
 
 
