@@ -47,8 +47,8 @@ TEST(Override, LeadsIntoNoEntryThatTheSceneLacks) {
 }
 
 TEST(Override, MakesAnEntryThatIsSetAsAWhole) {
-  const Scene scene = scene_of(motion + "controls: {agonist: {field: 1}}\n",
-                               {"controls.supply={field: 2}", "controls.supply.field=3"});
+  const Scene scene =
+      scene_of(motion + "controls: {agonist: {field: 1}}\n", {"controls.supply={field: 2}", "controls.supply.field=3"});
   EXPECT_EQ(scene.controls.find("supply")->value.value.at(0), 3.0);
 }
 
