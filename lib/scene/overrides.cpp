@@ -65,10 +65,8 @@ std::string missing_entry(const Node& root, const std::vector<KeyStep>& steps) {
   if (section == nullptr || !section->is_map() || section->entries.empty()) return {};
   if (section->find(steps[1].key) != nullptr) return {};
   const std::vector<std::string> names = names_in(*section);
-  const std::string hint = base::did_you_mean(steps[1].key, names);
-  return base::format(
-      "the scene has no {} '{}'{}", noun, steps[1].key,
-      hint.empty() ? base::format("; a new one is set as a whole: {}.{}={{...}}", steps[0].key, steps[1].key) : hint);
+  return base::format("the scene has no {} '{}'{}; a new one is set as a whole: {}.{}={{...}}", noun, steps[1].key,
+                      base::did_you_mean(steps[1].key, names), steps[0].key, steps[1].key);
 }
 
 }  // namespace

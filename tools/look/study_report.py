@@ -88,7 +88,7 @@ def parameters(result):
         (interval.name, tables.number(interval.start), f"{interval.value:.7g}", interval_text(interval.half_width), tables.number(interval.lower), tables.number(interval.upper), "" if interval.unit == "1" else interval.unit)
         for interval in studies.intervals_of(result)
     ]
-    return table(("parameter", "start", "fitted", "± (95 %)", "lower bound", "upper bound", "unit"), rows)
+    return table(("parameter", "start", "fitted", "\u00b1 (95 %)", "lower bound", "upper bound", "unit"), rows)
 
 
 def rms(values):

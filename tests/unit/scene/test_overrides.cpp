@@ -36,11 +36,12 @@ TEST(Override, LeadsIntoNoEntryThatTheSceneLacks) {
   const std::string driven = motion + "controls: {agonist: {field: 1}, antagonist: {field: 0}}\n";
   EXPECT_EQ(errors_of(driven, {"controls.agonst.field=3"}),
             "--set controls.agonst.field=3: error: controls.agonst: the scene has no control 'agonst' (did you mean "
-            "'agonist'?)");
+            "'agonist'?); a new one is set as a whole: controls.agonst={...}");
   EXPECT_EQ(errors_of(driven, {"bodies.amr.mass=3", "controls.pump.field=3"}),
-            "--set bodies.amr.mass=3: error: bodies.amr: the scene has no body 'amr' (did you mean 'arm'?)\n"
-            "--set controls.pump.field=3: error: controls.pump: the scene has no control 'pump'; a new one is set as a "
-            "whole: controls.pump={...}");
+            "--set bodies.amr.mass=3: error: bodies.amr: the scene has no body 'amr' (did you mean 'arm'?); a new one "
+            "is set as a whole: bodies.amr={...}\n"
+            "--set controls.pump.field=3: error: controls.pump: the scene has no control 'pump' (known: agonist, "
+            "antagonist); a new one is set as a whole: controls.pump={...}");
   // A misspelt section is an unknown key.
   EXPECT_EQ(errors_of(driven, {"contrls.agonist.field=3"}),
             "--set contrls.agonist.field=3: error: contrls: unknown key (did you mean 'controls'?)");
