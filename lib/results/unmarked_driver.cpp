@@ -35,9 +35,10 @@ struct OpenFile : H5FD_t {
   bool writes = false;     ///< open for writing, and not abandoned
   bool truncates = false;  ///< staged: the new file takes nothing from an old one
   std::uint64_t end_of_addresses = 0;
-  std::uint64_t end = 0;         ///< of what is in the file, written or staged
-  std::uint64_t claimed = 0;     ///< end that the superblock on the disk states
-  bool finished = false;         ///< the library has removed its mark
+  std::uint64_t end = 0;      ///< of what is in the file, written or staged
+  std::uint64_t claimed = 0;  ///< end that the superblock on the disk states
+  bool touched = false;       ///< written at once
+  bool failed = false;
   SuperblockBytes superblock{};  ///< as the library wrote it last
   Pages pages;                   ///< staged
 };
@@ -83,6 +84,9 @@ bool set_size(const OpenFile& file, std::uint64_t size) {
   return ::ftruncate(file.descriptor, static_cast<off_t>(size)) == 0;
 }
 
+/// Bytes beyond the end that the superblock states hurt nobody.
+void set_size_if_possible(const OpenFile& file, std::uint64_t size) { static_cast<void>(set_size(file, size)); }
+
 /// Makes the file on the disk, and its superblock, reach beyond `end`. The room is sparse; where it is not to be had
 /// (file size limit) the file does without.
 bool claim(OpenFile& file, std::uint64_t end) {
@@ -98,24 +102,26 @@ bool claim(OpenFile& file, std::uint64_t end) {
   return true;
 }
 
-/// Writes the superblock that the library has just given: without its mark, or, at the end, as it is.
+/// Writes the superblock that the library has just given.
 bool write_superblock(OpenFile& file) {
-  file.finished = !is_marked(file.superblock);
   const std::uint64_t end = end_of_file(file.superblock);
-  if (!file.finished && end > file.claimed) return claim(file, end);
-  const SuperblockBytes bytes = file.finished ? file.superblock : unmarked(file.superblock, file.claimed);
+  if (end > file.claimed) return claim(file, end);
+  const SuperblockBytes bytes = unmarked(file.superblock, file.claimed);
   return write_all(file.descriptor, bytes.data(), bytes.size(), 0);
 }
 
-/// Gives back the room of a file that was not brought to its end, which the next who writes would build upon.
-bool release(OpenFile& file) {
-  const std::uint64_t end = std::max(end_of_file(file.superblock), file.end);
-  if (end >= file.claimed) return true;
+/// Gives back the room; of a file that was not brought to its end, up to all that was written.
+bool release(const OpenFile& file) {
+  const bool whole = file.writes && !file.failed;
+  const std::uint64_t end = whole ? file.end_of_addresses : std::max(end_of_file(file.superblock), file.end);
   const SuperblockBytes bytes = unmarked(file.superblock, end);
-  return write_all(file.descriptor, bytes.data(), bytes.size(), 0) && set_size(file, end);
+  const bool good = write_all(file.descriptor, bytes.data(), bytes.size(), 0);
+  if (good) set_size_if_possible(file, end);
+  return good;
 }
 
 bool write_at_once(OpenFile& file, std::uint64_t at, const unsigned char* bytes, std::size_t size) {
+  file.touched = true;
   const std::size_t of_superblock = at < superblock_size ? std::min(size, superblock_size - at) : 0;
   if (size > of_superblock) {
     if (at + size > file.claimed && !claim(file, at + size)) return false;
@@ -208,7 +214,9 @@ bool write_staged(const OpenFile& file) {
   } else if (!runs.empty() && runs.front().first->first == 0) {
     std::ranges::rotate(runs, runs.begin() + 1);
   }
-  return std::ranges::all_of(runs, [&](const auto& run) { return write_run(file, run.first, run.second); });
+  const bool good = std::ranges::all_of(runs, [&](const auto& run) { return write_run(file, run.first, run.second); });
+  if (good) set_size_if_possible(file, file.end_of_addresses);
+  return good;
 }
 
 H5FD_t* open(const char* name, unsigned flags, hid_t access, haddr_t) {
@@ -241,17 +249,12 @@ H5FD_t* open(const char* name, unsigned flags, hid_t access, haddr_t) {
   return file;
 }
 
-/// At a clean end the file gets the size that its superblock states.
 herr_t close(H5FD_t* handle) {
   OpenFile& file = own(handle);
   bool good = true;
   try {
-    const bool changed = file.order == Order::at_once ? file.finished : !file.pages.empty();
-    if (file.order == Order::at_once && is_marked(file.superblock)) {
-      good = release(file);
-    } else if (file.writes && changed) {
-      good = (file.order == Order::at_once || write_staged(file)) && set_size(file, file.end_of_addresses);
-    }
+    if (file.touched) good = release(file);
+    if (file.writes && !file.pages.empty()) good = write_staged(file);
   } catch (const std::bad_alloc&) {
     errno = ENOMEM, good = false;
   }
@@ -303,6 +306,7 @@ herr_t write(H5FD_t* handle, H5FD_mem_t, hid_t, haddr_t at, std::size_t size, co
   try {
     const bool staged = file.order != Order::at_once;
     if (!(staged ? stage(file, at, bytes, size) : write_at_once(file, at, bytes, size))) {
+      file.failed = true;
       return fail(std::strerror(errno));
     }
   } catch (const std::bad_alloc&) {
