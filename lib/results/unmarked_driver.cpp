@@ -39,6 +39,7 @@ struct OpenFile : H5FD_t {
   std::uint64_t claimed = 0;  ///< end that the superblock on the disk states
   bool touched = false;       ///< written at once
   bool failed = false;
+  bool described = false;        ///< something that the superblock does not know of yet may be referred to
   SuperblockBytes superblock{};  ///< as the library wrote it last
   Pages pages;                   ///< staged
 };
@@ -110,10 +111,11 @@ bool write_superblock(OpenFile& file) {
   return write_all(file.descriptor, bytes.data(), bytes.size(), 0);
 }
 
-/// Gives back the room; of a file that was not brought to its end, up to all that was written.
+/// Gives back the room; of a file that was not brought to its end, up to all that may be referred to.
 bool release(const OpenFile& file) {
   const bool whole = file.writes && !file.failed;
-  const std::uint64_t end = whole ? file.end_of_addresses : std::max(end_of_file(file.superblock), file.end);
+  const std::uint64_t known = end_of_file(file.superblock);
+  const std::uint64_t end = whole ? file.end_of_addresses : file.described ? std::max(known, file.end) : known;
   const SuperblockBytes bytes = unmarked(file.superblock, end);
   const bool good = write_all(file.descriptor, bytes.data(), bytes.size(), 0);
   if (good) set_size_if_possible(file, end);
@@ -299,12 +301,13 @@ herr_t read(H5FD_t* handle, H5FD_mem_t, hid_t, haddr_t at, std::size_t size, voi
   return good ? 0 : fail(std::strerror(errno));
 }
 
-herr_t write(H5FD_t* handle, H5FD_mem_t, hid_t, haddr_t at, std::size_t size, const void* buffer) {
+herr_t write(H5FD_t* handle, H5FD_mem_t type, hid_t, haddr_t at, std::size_t size, const void* buffer) {
   OpenFile& file = own(handle);
   if (!file.writes) return 0;
   const auto* bytes = static_cast<const unsigned char*>(buffer);
   try {
     const bool staged = file.order != Order::at_once;
+    if (type != H5FD_MEM_DRAW) file.described = at >= superblock_size;
     if (!(staged ? stage(file, at, bytes, size) : write_at_once(file, at, bytes, size))) {
       file.failed = true;
       return fail(std::strerror(errno));
