@@ -72,7 +72,10 @@ Fate next_change(int descriptor) {
 }
 
 /// The part of a write that a kill between two pages lets through: up to the last border of pages in its first half.
+/// Less than a page is taken as one piece: the instant between two pages of one small write (a header of a data set
+/// that crosses their border) is beyond what a file format can mend.
 std::size_t torn(std::size_t size, off_t at) {
+  if (size < page) return 0;
   const std::size_t begin = static_cast<std::size_t>(at) % page;
   const std::size_t half = (begin + size / 2 + 1) / page * page;
   return half > begin ? std::min(half - begin, size) : 0;

@@ -6,6 +6,7 @@ Without --all a part of the changes: the first and the last, which make the file
 
 import os
 import pathlib
+import random
 import signal
 import subprocess
 import sys
@@ -112,6 +113,42 @@ class Killed(Broken):
                     rows = self.look(self.output, self.whole, ("running", "completed"))
                     self.assertIsNotNone(rows)
                     self.finish(rows)
+
+
+@unittest.skipUnless(ALL, "long")
+class KilledElsewhere(Broken):
+    """100 random changes each: files of meshes, with compressed fields, and of the optimiser, which begins anew."""
+
+    def opens(self):
+        if not any(self.output.read_bytes()[:8]):
+            return False
+        self.program("info", "a.h5")
+        for how in ({}, {"swmr": True}):
+            with h5py.File(self.output, "r", **how) as file:
+                self.assertIn(file.attrs["status"], ("running", "completed"))
+                file.visititems(lambda name, item: item[()] if isinstance(item, h5py.Dataset) else None)
+        return True
+
+    def killed_anywhere(self, arguments, again):
+        self.program(*arguments, "-o", "other.h5")
+        whole = data_sets(self.folder / "other.h5")
+        count = self.changes(*arguments, "-o", "counted.h5")
+        generator = random.Random(3)
+        for _ in range(100):
+            number = generator.randint(1, count)
+            with self.subTest(number=number):
+                self.output.unlink(missing_ok=True)
+                self.assertEqual(self.broken(f"kill:{number}", *arguments, "-o", "a.h5")[0], -signal.SIGKILL)
+                self.program(*arguments, *(again if self.opens() else ["-o", "a.h5", "--force"]))
+                self.assert_whole(self.output, whole)
+
+    def test_with_meshes(self):
+        self.killed_anywhere(
+            ["run", SCENES / "cube.yaml", "--no-paraview", *options(["solids.cube.mesh.box.cells=[2, 2, 2]"])], ["--resume", "a.h5"]
+        )
+
+    def test_in_optimise(self):
+        self.killed_anywhere(["optimise", SCENES / "double_integrator_optimal.yaml", "--no-paraview"], ["-o", "a.h5", "--force"])
 
 
 class FullDisk(Broken):
