@@ -200,6 +200,11 @@ bool write_staged(const OpenFile& file) {
   if (file.truncates && !set_size(file, 0)) return false;
   // Where one process fills the disk and another is killed the file has at least all that its first page speaks of.
   if (size_on_disk(file) < file.end_of_addresses && !set_size(file, file.end_of_addresses)) return false;
+  // Groups may refer to what is new before the first page, and its end of the file, are written.
+  if (file.claimed > 0 && !file.truncates && file.claimed < file.end_of_addresses) {
+    const SuperblockBytes bytes = unmarked(file.superblock, file.end_of_addresses);
+    if (!write_all(file.descriptor, bytes.data(), bytes.size(), 0)) return false;
+  }
   std::vector<std::pair<Pages::const_iterator, std::size_t>> runs;
   for (auto page = file.pages.begin(); page != file.pages.end(); ++page) {
     if (page->first * page_bytes >= file.end_of_addresses) break;
