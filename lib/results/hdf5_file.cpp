@@ -1,8 +1,6 @@
 #include "results/hdf5_file.hpp"
 
-#include <fcntl.h>
 #include <hdf5.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/special_file.hpp"
 #include "results/live_file.hpp"
+#include "results/unmarked_driver.hpp"
 
 namespace muldi::results::hdf5 {
 namespace {
@@ -19,7 +18,10 @@ constexpr std::size_t compress_from_bytes = std::size_t{64} << 10;
 constexpr std::size_t fixed_chunk_bytes = std::size_t{1} << 20;
 constexpr unsigned deflate_level = 1;        // after the shuffle filter higher levels gain little and cost much
 constexpr unsigned most_compact_links = 64;  // groups of fewer links are made and searched faster without an index
-constexpr std::size_t memory_growth = 4096;
+constexpr unsigned most_compact_attributes = 60000;
+// Makes the header of the root group as large as the first page, which reaches the disk in one piece: what `close` puts
+// down there appears all at once.
+constexpr unsigned links_in_first_page = 71, link_name_bytes = 40;
 constexpr std::size_t max_rank = 8;
 constexpr unsigned swmr_attempts = 20;  // one millisecond in all
 
@@ -61,12 +63,15 @@ hid_t text_type() {
 }
 
 /// Latest format (SWMR needs it), values written in place without a detour, no locks of the library: LiveFile has them.
-Id access_properties() {
+Id access_properties(Access access) {
   prepare_thread();
   Id properties(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_libver_bounds(properties.get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
   H5Pset_sieve_buf_size(properties.get(), 0);
   H5Pset_file_locking(properties.get(), false, true);
+  if (access == Access::append) set_driver(properties.get(), {Writing::Order::at_once});
+  if (access == Access::write) set_driver(properties.get(), {Writing::Order::highest_first});
+  if (access == Access::shorten) set_driver(properties.get(), {Writing::Order::lowest_first});
   return properties;
 }
 
@@ -74,6 +79,14 @@ Id access_properties() {
 Id link_properties() {
   Id properties(H5Pcreate(H5P_LINK_CREATE));
   H5Pset_create_intermediate_group(properties.get(), 1);
+  return properties;
+}
+
+/// Properties of groups (of the file: its root group) of a few links and attributes, kept in the header of the group:
+/// found faster than in an index, and changed in one piece.
+Id compact(Id properties) {
+  H5Pset_link_phase_change(properties.get(), most_compact_links, most_compact_links - 1);
+  H5Pset_attr_phase_change(properties.get(), most_compact_attributes, most_compact_attributes - 1);
   return properties;
 }
 
@@ -234,23 +247,25 @@ std::int64_t File::check(std::int64_t result, const std::string& object) const {
 }
 
 File::File(Origin origin)
-    : origin_(std::move(origin)), links_(link_properties()), rows_access_(H5Pcreate(H5P_DATASET_ACCESS)) {
+    : origin_(std::move(origin)),
+      links_(link_properties()),
+      rows_access_(H5Pcreate(H5P_DATASET_ACCESS)),
+      groups_creation_(compact(Id(H5Pcreate(H5P_GROUP_CREATE)))) {
   H5Pset_chunk_cache(rows_access_.get(), 1, 0, 1.0);
 }
 
 File File::create(const std::string& path) {
-  const Id access = access_properties();
-  H5Pset_fapl_core(access.get(), memory_growth, true);
+  const Id access = access_properties(Access::write);
   File file({path, Access::write});
   file.in_memory_ = true;
-  file.groups_creation_ = Id(H5Pcreate(H5P_GROUP_CREATE));
-  H5Pset_link_phase_change(file.groups_creation_.get(), most_compact_links, most_compact_links - 1);
-  file.id_ = Id(file.check(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), ""));
+  const Id creation = compact(Id(H5Pcreate(H5P_FILE_CREATE)));
+  H5Pset_est_link_info(creation.get(), links_in_first_page, link_name_bytes);
+  file.id_ = Id(file.check(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), ""));
   return file;
 }
 
 File File::open(const std::string& path, Access access) {
-  const Id properties = access_properties();
+  const Id properties = access_properties(access);
   File file({path, access});
   const unsigned write = H5F_ACC_RDWR | (access == Access::append ? H5F_ACC_SWMR_WRITE : 0U);
   if (access != Access::read) {
@@ -258,6 +273,7 @@ File File::open(const std::string& path, Access access) {
     return file;
   }
   if (base::is_special_file(path)) throw base::InputError("cannot read '" + path + "': not a regular file");
+  check_begun(path);
   if (H5Fis_hdf5(path.c_str()) == 0) throw base::InputError("cannot read '" + path + "': not an HDF5 file");
   check_whole(path);
   // The library doubles its wait between two attempts: its default of 100 would never end on a damaged file.
@@ -360,7 +376,8 @@ bool File::contains(const std::string& path) const {
 void File::set_attribute(const Attribute& attribute) {
   const auto& [object, name, value] = attribute;
   if (!object.empty() && !contains(object)) {
-    const Id group(check(H5Gcreate2(id_.get(), object.c_str(), links_.get(), H5P_DEFAULT, H5P_DEFAULT), object));
+    const Id group(
+        check(H5Gcreate2(id_.get(), object.c_str(), links_.get(), groups_creation_.get(), H5P_DEFAULT), object));
   }
   const Id owner(check(H5Oopen(id_.get(), name_of(object), H5P_DEFAULT), object));
   if (H5Aexists(owner.get(), name.c_str()) > 0) check(H5Adelete(owner.get(), name.c_str()), object);
@@ -391,10 +408,7 @@ void File::close() {
 
 void File::abandon() {
   void* handle = nullptr;
-  if (in_memory_ || !id_.valid() || H5Fget_vfd_handle(id_.get(), H5P_DEFAULT, &handle) < 0) return;
-  const int sink = ::open("/dev/null", O_RDWR | O_CLOEXEC);
-  ::dup2(sink, *static_cast<int*>(handle));
-  ::close(sink);
+  if (id_.valid() && H5Fget_vfd_handle(id_.get(), H5P_DEFAULT, &handle) >= 0) hdf5::abandon(handle);
 }
 
 }  // namespace muldi::results::hdf5

@@ -3,6 +3,7 @@
 
 import os
 import resource
+import subprocess
 import unittest
 
 from program import SCENES, ProgramTest, attribute, data_sets, values
@@ -135,6 +136,29 @@ class FullDisk(ProgramTest):
                 self.program("run", TRUNK, "--resume", "a.h5")
                 self.assert_same_bits("whole.h5", "a.h5")
                 output.unlink()
+
+    def test_of_a_real_small_disk_leaves_what_fits(self):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16m", "tmpfs", disk], capture_output=True, check=False)
+        if mounted.returncode != 0:
+            self.skipTest("only root may mount a file system")
+        self.addCleanup(lambda: subprocess.run(["umount", disk], check=True))
+        run = ["run", TRUNK, "--set", "dynamics.duration=4 s"]
+        self.program(*run, "-o", "whole.h5")
+        whole = data_sets(self.folder / "whole.h5")
+        filler, output = disk / "filler", disk / "a.h5"
+        filler.write_bytes(bytes((16 << 20) - 3_500_000))
+        done = self.program(*run, "-o", output, code=4)
+        self.assertRegex(done.stderr, r"^error: cannot write '.*a.h5'.*: No space left on device\n$")
+        self.assertIn(attribute(output, "status"), ("write_error", "running"))
+        cut = data_sets(output)
+        self.assertGreater(cut["time"][0][0], 100)
+        for name, (_, _, content) in cut.items():
+            self.assertTrue(whole[name][2].startswith(content), name)
+        filler.unlink()
+        self.program(*run, "--resume", output)
+        self.assert_same_bits("whole.h5", output)
 
 
 if __name__ == "__main__":
