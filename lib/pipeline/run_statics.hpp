@@ -25,11 +25,17 @@ class EquilibriumRows {
   EquilibriumRows(results::Recorder& recorder, const scene::Scene& scene, const build::BuiltModel& built);
   void write(const statics::SweepPoint& point);
 
-  /// The muscle that is shortest for its rest length at the last row, empty without muscles, and its stretch.
-  const std::string& least_stretched() const { return least_stretched_; }
-  double least_stretch() const { return least_stretch_; }
+  /// A muscle and its stretch.
+  struct Stretched {
+    std::string muscle;
+    double stretch = 0.0;
+  };
+  /// The muscle that is shortest for its rest length at the last row; empty without muscles.
+  Stretched least_stretched();
 
  private:
+  model::NodeView last_view() const;
+
   const build::BuiltModel& built_;
   double last_load_;
   NodeRows rows_;
@@ -37,8 +43,11 @@ class EquilibriumRows {
   long looks_ = -2;
   model::SupplyBook supply_;
   std::vector<double> accounts_;
-  double least_stretch_ = 0.0;
-  std::string least_stretched_;
+  struct {
+    double load = 0.0;
+    Eigen::VectorXd x, q, multipliers, y;
+    std::vector<double> u;
+  } last_;  // row
   Eigen::VectorXd zero_q_;
   Eigen::VectorXd zero_v_;
   Eigen::VectorXd constraint_force_;
@@ -55,7 +64,7 @@ class StaticsRun {
 
  private:
   /// Where the equilibrium was lost, as the user speaks of it.
-  std::string loss_sentence(const statics::SweepResult& result) const;
+  std::string loss_sentence(const statics::SweepResult& result);
   /// Limit points and branches that the arc length has passed: attributes and messages.
   void report_changes(const std::vector<statics::BranchChange>& changes, const RunContext& context);
   void report_critical(const std::vector<statics::CriticalPoint>& points, const RunContext& context);
