@@ -8,6 +8,7 @@
 #include "pipeline/node_rows.hpp"
 #include "pipeline/provenance.hpp"
 #include "pipeline/run_statics.hpp"
+#include "pipeline/step_options.hpp"
 #include "scene/read_scene.hpp"
 #include "variational/time_loop.hpp"
 
@@ -22,13 +23,10 @@ variational::LoopOptions loop_options(const scene::Scene& scene, const build::Bu
   options.dt = scene.dynamics->step;
   options.steps = scene.dynamics->n_steps();
   options.record_every = scene.record.every;
-  options.step.tolerance = scene.solver.tolerance;
-  options.step.max_iterations = scene.solver.max_iterations;
-  options.step.linear = built.linear;
+  options.step = step_options(scene, built);
   if (scene.dynamics->integrator == scene::Integrator::explicit_scheme) {
     options.integrator = variational::Integrator::explicit_scheme;
   }
-  options.step.substructures = built.solid_linear;
   return options;
 }
 
