@@ -1,7 +1,6 @@
 #include "pipeline/checkpoint.hpp"
 
 #include <algorithm>
-#include <string_view>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -32,16 +31,10 @@ void each_vector(State& state, const model::Model& model, const Visit& visit) {
   visit("q", state.q, model.n_q());
   visit("y", state.y, model.n_y());
   visit("advance", state.advance, model.n_q());
-  visit("increment_before", state.trend.increment, manifold.n_v());
-  visit("advance_before", state.trend.advance, model.n_q());
-  visit("y_before", state.trend.y, model.n_y());
   visit("factor_q0", state.factor.q0, model.n_q());
   visit("factor_q1", state.factor.q1, model.n_q());
   visit("factor_y", state.factor.y, model.n_y());
 }
-
-/// What records of older versions lack; they go on without it, to the tolerance.
-bool is_optional(std::string_view name) { return name.ends_with("_before"); }
 
 // The other entries of `reals`, before the vectors of the state; `first()` fixes them.
 enum Real : std::size_t { ledger_sums, residual, row_values, state_vectors };
@@ -74,7 +67,7 @@ CheckpointWriter::CheckpointWriter(const model::Model& model, std::size_t n_row)
   if (model.books_supply) checkpoint_.reals.push_back({supply, std::vector<double>(model.terminals.size(), 0.0)});
   checkpoint_.integers = {{"step", {-1}}, {"solver", {0, 0}}};
   if (model.substructures.empty()) return;
-  checkpoint_.integers.push_back({"factor", {0, 0, 0, 0, 0}});
+  checkpoint_.integers.push_back({"factor", {0, 0, 0}});
   if (const Eigen::Index n = memory_of(model); n > 0) checkpoint_.reals.push_back({memory, zeros(n)});
 }
 
@@ -113,8 +106,6 @@ const results::Checkpoint& CheckpointWriter::write(const variational::State& sta
   checkpoint_.integers[2].values[0] = state.factor.valid ? 1 : 0;
   checkpoint_.integers[2].values[1] = state.factor.first ? 1 : 0;
   checkpoint_.integers[2].values[2] = state.exact_steps;
-  checkpoint_.integers[2].values[3] = state.trend.of_positions ? 1 : 0;
-  checkpoint_.integers[2].values[4] = state.trend.of_stage ? 1 : 0;
   write_memory();
   return checkpoint_;
 }
@@ -131,12 +122,8 @@ variational::State state_of(const results::Checkpoint& checkpoint, const scene::
   variational::State state;
   bool fits = true;
   each_vector(state, model, [&](const char* name, Eigen::VectorXd& vector, Eigen::Index length) {
-    if (has(checkpoint, name)) {
-      vector = vector_of(checkpoint.real(name));
-    } else if (is_optional(name)) {
-      vector.setZero(length);
-    }
-    fits &= vector.size() == length && (has(checkpoint, name) || is_optional(name));
+    if (has(checkpoint, name)) vector = vector_of(checkpoint.real(name));
+    fits &= has(checkpoint, name) && vector.size() == length;
   });
   if (!fits) {
     throw base::InputError(
@@ -150,10 +137,6 @@ variational::State state_of(const results::Checkpoint& checkpoint, const scene::
     state.factor.valid = checkpoint.integer("factor")[0] != 0;
     state.factor.first = checkpoint.integer("factor")[1] != 0;
     if (checkpoint.integer("factor").size() > 2) state.exact_steps = static_cast<int>(checkpoint.integer("factor")[2]);
-    if (checkpoint.integer("factor").size() > 4) {
-      state.trend.of_positions = checkpoint.integer("factor")[3] != 0;
-      state.trend.of_stage = checkpoint.integer("factor")[4] != 0;
-    }
   }
   model.manifold->configuration(state.x, state.q);
   return state;

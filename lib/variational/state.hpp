@@ -15,18 +15,8 @@ struct FactorPoint {
   Eigen::VectorXd y;   ///< (n_y)
 };
 
-/// What the predictor of the substructures knows of the step before the last one, and how far it goes: by the last
-/// increment alone or on its straight line. Valid from the second step on.
-struct Trend {
-  Eigen::VectorXd increment = {};  ///< minimal increment before State::increment (n_v)
-  Eigen::VectorXd advance = {};    ///< before State::advance (n_q)
-  Eigen::VectorXd y = {};          ///< before State::y (n_y)
-  bool of_positions = false;       ///< increments are extrapolated
-  bool of_stage = false;           ///< stage unknowns are
-};
-
-/// Momentum form: configuration and unprojected momentum at the same node (numerics, 1.5). `y`, `advance`, `trend`
-/// and `factor` are empty in models without substructures.
+/// Momentum form: configuration and unprojected momentum at the same node (numerics, 1.5). `y`, `advance` and `factor`
+/// are empty in models without substructures.
 struct State {
   long step = 0;  ///< nodes passed since t = 0
   double t = 0.0;
@@ -37,7 +27,6 @@ struct State {
   Eigen::VectorXd multipliers;   ///< lambda of the last node (n_loop_rows), of least norm
   Eigen::VectorXd y = {};        ///< stage unknowns of the last interval (n_y), the predictor
   Eigen::VectorXd advance = {};  ///< last increment of the substructures' positions (n_q)
-  Trend trend = {};
   FactorPoint factor = {};
   int exact_steps = 0;  ///< steps to come that solve for substructures with exact derivatives from the start
 };

@@ -363,7 +363,6 @@ void Stepper::finish(State& state, std::span<const double> u, StepReport& report
   parts_.gather(constraint_force_);
   report.violation = forces_.violation;
   report.work = model_.work(point(state, u));
-  if (!parts_.empty()) state.trend.increment = state.increment;
   manifold_.difference(state.x, x_, state.increment);
   state.multipliers = lambda_ / weight;
   carry_residual();
@@ -374,8 +373,9 @@ void Stepper::finish(State& state, std::span<const double> u, StepReport& report
   }
   if (forces_.end.size() > 0) state.p += forces_.end;
   if (!parts_.empty()) {
+    state.advance = q_ - state.q;
     if constexpr (has(Mutation::potentials_at_nodes)) y_ = 2.0 * y_ - state.y;
-    follow_trend(state);
+    state.y = y_;
     if (report.factorisations > 0 || !state.factor.valid) state.factor = factor_;
     // Tried without again now and then: the exact derivative costs many products.
     state.exact_steps = exact_ && state.exact_steps == 0 ? exact_for_steps : std::max(0, state.exact_steps - 1);

@@ -55,8 +55,6 @@ class Stepper final : public StepMethod {
 
   bool attempt(const State& state, std::span<const double> u, Attempt how, StepReport& report);
   void start_at(const State& state, bool extrapolate, std::span<const double> u);
-  /// Keeps the increment and the stage unknowns of the step that ends, and chooses how far the next one extrapolates.
-  void follow_trend(State& state);
   /// Forces at the iterate x_, q_.
   void evaluate(const State& state, std::span<const double> u);
   model::IntervalPoint point(const State& state, std::span<const double> u) const;
