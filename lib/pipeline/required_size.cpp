@@ -41,7 +41,8 @@ void require_size(const scene::Scene& scene, const build::BuiltModel& built, con
   std::error_code unknown;
   const std::filesystem::space_info disk = std::filesystem::space(folder.empty() ? "." : folder, unknown);
   const double results = result_bytes(scene, built);
-  if (unknown || results <= static_cast<double>(disk.capacity)) return;
+  // File systems without a size (/proc) say 0.
+  if (unknown || disk.capacity == 0 || results <= static_cast<double>(disk.capacity)) return;
   constexpr double gibi = 1024.0 * 1024.0 * 1024.0;
   throw base::InputError(
       base::format("the results take {:.3g} GiB, more than the {:.3g} GiB of the whole disk: record fewer rows "

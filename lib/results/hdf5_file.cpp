@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/special_file.hpp"
+#include "results/hdf5_attribute.hpp"
 #include "results/live_file.hpp"
 #include "results/unmarked_driver.hpp"
 
@@ -55,13 +56,6 @@ const char* name_of(const std::string& object) { return object.empty() ? "/" : o
 hid_t file_type(ValueType type) { return type == ValueType::float64 ? H5T_IEEE_F64LE : H5T_STD_I64LE; }
 hid_t memory_type(ValueType type) { return type == ValueType::float64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64; }
 
-/// The type of every text attribute, made once.
-hid_t text_type() {
-  static const hid_t type = H5Tcopy(H5T_C_S1);
-  static const bool ready = H5Tset_size(type, H5T_VARIABLE) >= 0 && H5Tset_cset(type, H5T_CSET_UTF8) >= 0;
-  return ready ? type : H5I_INVALID_HID;
-}
-
 /// Latest format (SWMR needs it), values written in place without a detour, no locks of the library: LiveFile has them.
 Id access_properties(Access access) {
   prepare_thread();
@@ -69,6 +63,7 @@ Id access_properties(Access access) {
   H5Pset_libver_bounds(properties.get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
   H5Pset_sieve_buf_size(properties.get(), 0);
   H5Pset_file_locking(properties.get(), false, true);
+  if (access == Access::read) set_reading_driver(properties.get());
   if (access == Access::append) set_driver(properties.get(), {Writing::Order::at_once});
   if (access == Access::write) set_driver(properties.get(), {Writing::Order::highest_first});
   if (access == Access::shorten) set_driver(properties.get(), {Writing::Order::lowest_first});
@@ -107,43 +102,6 @@ Id space_of(const Shape& shape, const hsize_t* maximum = nullptr) {
 void compress(const Id& properties) {
   H5Pset_shuffle(properties.get());
   H5Pset_deflate(properties.get(), deflate_level);
-}
-
-std::optional<AttributeValue> read_attribute(const Id& attribute) {
-  const Id type(H5Aget_type(attribute.get()));
-  const Id space(H5Aget_space(attribute.get()));
-  const auto size = H5Sget_simple_extent_npoints(space.get());
-  if (!type.valid() || size != 1) return {};
-  const H5T_class_t kind = H5Tget_class(type.get());
-  if (kind == H5T_STRING) {
-    if (H5Tis_variable_str(type.get()) > 0) {
-      char* text = nullptr;
-      if (H5Aread(attribute.get(), type.get(), &text) < 0) return {};
-      std::string result = text == nullptr ? "" : text;
-      H5free_memory(text);
-      return result;
-    }
-    std::string text(H5Tget_size(type.get()), '\0');
-    if (H5Aread(attribute.get(), type.get(), text.data()) < 0) return {};
-    return text.substr(0, text.find('\0'));
-  }
-  std::int64_t integer = 0;
-  if (kind == H5T_INTEGER && H5Aread(attribute.get(), H5T_NATIVE_INT64, &integer) >= 0) return integer;
-  double real = 0.0;
-  if (kind == H5T_FLOAT && H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &real) >= 0) return real;
-  return {};
-}
-
-bool write_attribute(const Id& owner, const std::string& name, const AttributeValue& value) {
-  const auto write = [&](hid_t type_on_disk, hid_t type, const void* values) {
-    const Id space = space_of({});
-    const Id id(H5Acreate2(owner.get(), name.c_str(), type_on_disk, space.get(), H5P_DEFAULT, H5P_DEFAULT));
-    return id.valid() && H5Awrite(id.get(), type, values) >= 0;
-  };
-  if (const auto* real = std::get_if<double>(&value)) return write(H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, real);
-  if (const auto* integer = std::get_if<std::int64_t>(&value)) return write(H5T_STD_I64LE, H5T_NATIVE_INT64, integer);
-  const char* text = std::get<std::string>(value).c_str();
-  return write(text_type(), text_type(), &text);
 }
 
 /// File and memory selections of some rows; a scalar is its own row.

@@ -14,6 +14,7 @@
 #include <new>
 #include <vector>
 
+#include "results/global_heap.hpp"
 #include "results/superblock.hpp"
 
 namespace muldi::results::hdf5 {
@@ -42,6 +43,7 @@ struct OpenFile : H5FD_t {
   bool described = false;        ///< something that the superblock does not know of yet may be referred to
   SuperblockBytes superblock{};  ///< as the library wrote it last
   Pages pages;                   ///< staged
+  HeapCheck heaps;
 };
 
 OpenFile& own(H5FD_t* file) { return *static_cast<OpenFile*>(file); }
@@ -299,11 +301,12 @@ herr_t get_handle(H5FD_t* file, hid_t, void** handle) {
 }
 
 herr_t read(H5FD_t* handle, H5FD_mem_t, hid_t, haddr_t at, std::size_t size, void* buffer) {
-  const OpenFile& file = own(handle);
+  OpenFile& file = own(handle);
   auto* bytes = static_cast<unsigned char*>(buffer);
   const bool staged = file.order != Order::at_once;
   const bool good = staged ? read_staged(file, at, bytes, size) : read_all(file.descriptor, bytes, size, at);
-  return good ? 0 : fail(std::strerror(errno));
+  if (!good) return fail(std::strerror(errno));
+  return file.heaps.accepts(at, bytes, size) ? 0 : fail("damaged: a text is longer than the place where it is kept");
 }
 
 herr_t write(H5FD_t* handle, H5FD_mem_t type, hid_t, haddr_t at, std::size_t size, const void* buffer) {
@@ -327,9 +330,9 @@ herr_t write(H5FD_t* handle, H5FD_mem_t type, hid_t, haddr_t at, std::size_t siz
 /// A file never becomes shorter than its superblock says: that is done after the last superblock, by `close`.
 herr_t truncate(H5FD_t*, hid_t, hbool_t) { return 0; }
 
-H5FD_class_t make_driver() {
+H5FD_class_t make_driver(const char* name) {
   H5FD_class_t driver{};
-  driver.name = "muldi_unmarked";
+  driver.name = name;
   driver.maxaddr = static_cast<haddr_t>(std::numeric_limits<off_t>::max());
   driver.fc_degree = H5F_CLOSE_WEAK;
   driver.fapl_size = sizeof(Writing);
@@ -352,9 +355,16 @@ H5FD_class_t make_driver() {
 }  // namespace
 
 bool set_driver(std::int64_t access_properties, Writing writing) {
-  static const H5FD_class_t driver = make_driver();
+  static const H5FD_class_t driver = make_driver("muldi_unmarked");
   static const hid_t id = H5FDregister(&driver);
   return id >= 0 && H5Pset_driver(access_properties, id, &writing) >= 0;
+}
+
+bool set_reading_driver(std::int64_t access_properties) {
+  static const H5FD_class_t driver = make_driver("muldi_reader");
+  static const hid_t id = H5FDregister(&driver);
+  const Writing nothing;
+  return id >= 0 && H5Pset_driver(access_properties, id, &nothing) >= 0;
 }
 
 void abandon(void* handle) { static_cast<OpenFile*>(handle)->writes = false; }

@@ -28,6 +28,10 @@ struct Writing {
 /// Lets a file that is opened with these access properties be written through the driver; false if the library fails.
 bool set_driver(std::int64_t access_properties, Writing writing);
 
+/// Lets a file be read with a look at its heaps (global_heap.hpp). A driver of its own: in one process a file that is
+/// read and written is open twice.
+bool set_reading_driver(std::int64_t access_properties);
+
 /// From here on nothing more reaches the disk from the file whose handle (H5Fget_vfd_handle) this is.
 void abandon(void* handle);
 

@@ -195,7 +195,7 @@ TEST(Nlp, DerivativesOfCoordinatesOfLoopClosingJoints) {
   const Trajectory guess = resting_guess(at.problem, 5.0);
   Eigen::VectorXd q(at.problem.model.n_q());
   at.problem.model.manifold->configuration(guess.x[0], q);
-  at.problem.final.coordinates.push_back({.name = "joints.rocker", .cut = cut, .value = cut->value(q) + 0.1});
+  at.problem.final.coordinates.push_back({.name = "joints.rocker", .cut = cut, .value = cut->value(q) - 0.1});
   at.problem.limits.coordinates.push_back({.name = "joints.rocker", .cut = cut, .lower = -3.0, .upper = 3.0});
   expect_clean(at.problem,
                {{0.2, Tracking{.coordinates = {{.cut = cut, .wanted = 0.3}}}},

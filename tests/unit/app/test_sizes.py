@@ -53,7 +53,7 @@ class OutOfMemory(ProgramTest):
         def limit():
             resource.setrlimit(resource.RLIMIT_AS, (mebi << 20, mebi << 20))
 
-        arguments = ["run", SCENES / "cube.yaml", "-o", "a.h5", *options(["solids.cube.mesh.box.cells=[30, 30, 30]"])]
+        arguments = ["run", SCENES / "cube.yaml", "-o", "a.h5", "--force", *options(["solids.cube.mesh.box.cells=[30, 30, 30]"])]
         # 2 where it is foreseen, else 4.
         for code in (2, 4):
             try:
