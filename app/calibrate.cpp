@@ -10,6 +10,7 @@
 #include "app/study.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/special_file.hpp"
 #include "base/text.hpp"
 #include "results/hdf5_recorder.hpp"
 
@@ -54,7 +55,8 @@ std::string heading_of(const pipeline::Calibration& fit, const StudyArguments& a
   return text;
 }
 
-void require_absent(const std::string& path, const StudyArguments& arguments) {
+void require_writable(const std::string& path, const StudyArguments& arguments) {
+  base::refuse_special_output(path);
   if (arguments.force || !fs::exists(path)) return;
   throw base::InputError(base::format("'{}' exists; give --force to overwrite it", path));
 }
@@ -74,8 +76,8 @@ int calibrate(const StudyArguments& arguments) {
       arguments.output.empty() ? fs::path(study.scene).stem().string() + "_calibrated.yaml" : arguments.output;
   const std::string record =
       arguments.results.empty() ? fs::path(arguments.study).stem().string() + ".h5" : arguments.results;
-  require_absent(output, arguments);
-  require_absent(record, arguments);
+  require_writable(output, arguments);
+  require_writable(record, arguments);
   watch_interrupts();
   pipeline::CalibrateCalls calls;
   calls.interrupted = interrupt_asked;

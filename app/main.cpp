@@ -230,7 +230,7 @@ int guarded(const CLI::App& program, CommandLine& line) {
     base::log_error(error.what());
     return app::ExitCode::environment_failed;
   } catch (const std::bad_alloc&) {
-    base::log_error("out of memory");
+    base::log_error("out of memory: `muldi-sim validate` estimates what a scene takes; take fewer cells or bodies");
     return app::ExitCode::environment_failed;
   } catch (const std::exception& error) {
     base::log_error(std::string("internal error, please report it: ") + error.what());

@@ -91,8 +91,14 @@ std::string stage_text(const pipeline::StageEnd& end, const scene::Scene& scene)
 
 std::string deviations_text(const pipeline::Deviations& deviations, const scene::Scene& scene) {
   constexpr double degrees = 180.0 / std::numbers::pi;
-  std::string text = base::format("{:32} {:>14} {:>14}{}\n", "replay less optimum", "largest", "at the end",
-                                  deviations.beyond ? base::format(" {:>14}", "afterwards") : std::string());
+  std::string text;
+  if (deviations.stopped_at) {
+    text =
+        base::format("the replay stopped at t = {:.6g} {}; up to there\n", *deviations.stopped_at, scene.units.time());
+  }
+  text += base::format("{:32} {:>14} {:>14}{}\n", "replay less optimum", "largest",
+                       deviations.in_horizon ? "where it ends" : "at the end",
+                       deviations.beyond ? base::format(" {:>14}", "afterwards") : std::string());
   for (const pipeline::Deviation& one : deviations.all) {
     const double factor = one.is_angle ? degrees : 1.0;
     text += base::format("{:32} {:14.6g} {:14.6g}", one.name, factor * one.largest, factor * one.final);

@@ -11,6 +11,7 @@
 #include "base/log.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "pipeline/required_size.hpp"
 #include "pipeline/run.hpp"
 #include "pipeline/summary.hpp"
 #include "results/hdf5_recorder.hpp"
@@ -65,6 +66,7 @@ int run(const RunArguments& arguments) {
   }
   if (base::verbosity() >= base::Verbosity::debug) base::log_debug(base::trimmed(scene::resolved_text(*scene)));
   const results::Output output = output_of(arguments);
+  pipeline::require_size(*scene, *built, output.path);
   if (output.mode == results::Output::Mode::resume && is_complete(*scene, output.path)) {
     base::log_info(base::format("'{}' is complete already: nothing to do{}", output.path,
                                 scene->dynamics ? " (a longer dynamics.duration would go on)" : ""));

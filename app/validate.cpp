@@ -8,6 +8,7 @@
 #include "pipeline/checkpoint.hpp"
 #include "pipeline/initial_state.hpp"
 #include "pipeline/optimise.hpp"
+#include "pipeline/required_size.hpp"
 #include "pipeline/summary.hpp"
 #include "scene/read_scene.hpp"
 
@@ -26,6 +27,7 @@ int validate(const std::vector<std::string>& scenes, const std::vector<std::stri
       if (earlier) pipeline::state_of(*earlier, scene, *built.model);
       pipeline::initial_rates(scene, built, pipeline::initial_coordinates(scene, built));
       if (scene.optimal_control) pipeline::validate_optimal_control(scene, built, earlier);
+      pipeline::require_size(scene, built);
       std::fputs((path + ": " + pipeline::summary(scene, built)).c_str(), stdout);
     } catch (const base::InputError& error) {
       base::log_plain(error.what());

@@ -71,6 +71,7 @@ inline constexpr Dimension rotational_stiffness = torque / angle;
 inline constexpr Dimension rotational_damping = torque / angular_velocity;
 inline constexpr Dimension charge = current * time;
 inline constexpr Dimension voltage = power / current;
+inline constexpr Dimension capacitance = charge / voltage;
 inline constexpr Dimension field = voltage / length;
 inline constexpr Dimension permittivity = charge / (voltage * length);
 inline constexpr Dimension frequency = none / time;

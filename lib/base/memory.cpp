@@ -1,7 +1,9 @@
 #include "base/memory.hpp"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "base/error.hpp"
@@ -13,7 +15,10 @@ double machine_memory() {
   const long pages = ::sysconf(_SC_PHYS_PAGES);
   const long page = ::sysconf(_SC_PAGESIZE);
   if (pages <= 0 || page <= 0) return std::numeric_limits<double>::infinity();
-  return static_cast<double>(pages) * static_cast<double>(page);
+  const double all = static_cast<double>(pages) * static_cast<double>(page);
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return all;
+  return std::min(all, static_cast<double>(limit.rlim_cur));
 }
 
 void require_memory(double bytes, const std::string& what, const std::string& mend) {

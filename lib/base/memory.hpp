@@ -4,7 +4,8 @@
 
 namespace muldi::base {
 
-/// Bytes of physical memory; infinite where the system does not tell.
+/// Bytes of physical memory, or of what a process may have of it (`ulimit -v`); infinite where the system does not
+/// tell.
 double machine_memory();
 
 /// Throws InputError if `bytes` are more than the machine has: "<what> takes 120 GiB, more than the 16 GiB of this

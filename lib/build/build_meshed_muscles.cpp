@@ -133,7 +133,8 @@ class MuscleBuilder {
                             .layers = options_.layers,
                             .driven = std::move(driven_),
                             .input = input_,
-                            .layer_thickness = entry_.value.layer_thickness},
+                            .layer_thickness = entry_.value.layer_thickness,
+                            .wanted = electric_record(context_.scene)},
                            *built.model);
     ++built.assembled.muscles;
     ++built.assembled.meshed_muscles;

@@ -95,13 +95,18 @@ void add_muscles_of(TermContext& context, std::vector<base::Diagnostic>& errors)
       if (input.control < 0) continue;
       context.built.driven_muscles.push_back({entry.name, input.control, input.factor, length});
     }
+    const auto add_records = [&](const auto& component) {
+      add_observables(context, muscles::observables_of(component));
+      const model::ElectricRecord wanted = electric_record(context.scene);
+      if (muscle.control && wanted.any()) muscles::add_electric(component, wanted, *context.built.model);
+    };
     if (is_free(muscle)) {
       free.push_back({entry.name, element, n_bodies + free_index, 12 * n_bodies + free_index, inputs});
-      add_observables(context, muscles::observables_of(free.back()));
+      add_records(free.back());
     } else {
       attached.push_back(
           {entry.name, element, point_of(context.scene, *muscle.from), point_of(context.scene, *muscle.to), inputs});
-      add_observables(context, muscles::observables_of(attached.back()));
+      add_records(attached.back());
     }
     context.built.assembled.damping |= element.dissipates();
     context.built.assembled.electric |= muscle.control.has_value();
@@ -145,6 +150,16 @@ std::vector<double> free_lengths(const scene::Scene& scene) {
 
 model::LinearPoint point_of(const scene::Scene& scene, const scene::Attachment& end) {
   return multibody::body_point(body_index(scene, end.body.name), to_eigen(end.at.position));
+}
+
+model::ElectricRecord electric_record(const scene::Scene& scene) {
+  model::ElectricRecord wanted;
+  for (const scene::ElectricQuantity quantity : scene.record.electric) {
+    wanted.capacitance |= quantity == scene::ElectricQuantity::capacitance;
+    wanted.stored_energy |= quantity == scene::ElectricQuantity::stored_energy;
+    wanted.supplied_energy |= quantity == scene::ElectricQuantity::supplied_energy;
+  }
+  return wanted;
 }
 
 void add_muscles(TermContext& context) {

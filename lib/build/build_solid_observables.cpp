@@ -286,6 +286,8 @@ void add_solid_observables(const scene::Scene& scene, const std::vector<fem::Mes
     for (model::Observable& one : built.solid_records.back()->electrodes()) {
       built.model->observables.push_back(std::move(one));
     }
+    const model::ElectricRecord wanted = electric_record(scene);
+    if (wanted.any()) built.solid_records.back()->add_electric(wanted, *built.model);
   }
   ProbeBuilder probes(scene, meshes, built);
   for (const auto& entry : scene.record.probes) probes.add(entry);

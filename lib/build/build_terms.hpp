@@ -4,6 +4,7 @@
 
 #include "build/build_controls.hpp"
 #include "build/built_model.hpp"
+#include "model/supply.hpp"
 
 namespace muldi::build {
 
@@ -20,6 +21,9 @@ std::vector<double> free_lengths(const scene::Scene& scene);
 
 /// The map of an attachment.
 model::LinearPoint point_of(const scene::Scene& scene, const scene::Attachment& end);
+
+/// What the scene records of sources and conductors.
+model::ElectricRecord electric_record(const scene::Scene& scene);
 
 void add_muscles(TermContext& context);
 void add_springs(TermContext& context);

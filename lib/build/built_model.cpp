@@ -135,6 +135,7 @@ BuiltModel build_model(const scene::Scene& scene) {
   const double size = scene_size(scene, poses);
   make_manifold(scene, poses, size, built);
   built.model->node_sizes.assign(scene.bodies.size(), 12);
+  for (const auto& entry : scene.bodies) built.model->body_names.push_back(entry.name);
   built.model->node_sizes.resize(scene.bodies.size() + static_cast<std::size_t>(built.manifold->n_plain()), 1);
 
   ControlTable controls(scene);
@@ -152,6 +153,7 @@ BuiltModel build_model(const scene::Scene& scene) {
   add_loads(context);
   add_solids(context);
   add_meshed_muscles(context);
+  model::add_supply_totals(electric_record(scene), *built.model);
   add_field_histories(scene, built);
   built.model->controls = controls.take();
   built.model->bind();

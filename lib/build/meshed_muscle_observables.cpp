@@ -30,8 +30,18 @@ class MuscleAt {
   double charge(const NodeView& at) const {
     return record_.driven.empty() ? 0.0 : record_.records.charge(record_.driven, at) / record_.layers;
   }
+  /// The cells are as many layers in parallel, of the voltage of their own thickness.
+  double capacitance(const NodeView& at) const {
+    const fem::Solid& solid = record_.records.solid();
+    const double of_cells = solid.capacitance(solid.positions(at.q), record_.driven, false) / record_.layers;
+    return of_cells * cell_thickness() / *record_.layer_thickness;
+  }
+  model::TerminalValues terminal(const NodeView& at) const {
+    return {.potential = field(at) * cell_thickness(), .charge = record_.records.charge(record_.driven, at)};
+  }
 
  private:
+  double cell_thickness() const { return record_.length / record_.layers; }
   Eigen::Vector3d line(const NodeView& at) const { return record_.to.value(at.q) - record_.from.value(at.q); }
 
   MeshedMuscleRecord record_;
@@ -40,8 +50,11 @@ class MuscleAt {
 }  // namespace
 
 void add_muscle_observables(MeshedMuscleRecord record, model::Model& model) {
-  const std::string folder = "muscles/" + record.name + "/";
+  const std::string name = record.name;
+  const std::string folder = "muscles/" + name + "/";
   const bool has_layers = record.layer_thickness.has_value();
+  const bool is_driven = !record.driven.empty();
+  const model::ElectricRecord wanted = record.wanted;
   const auto muscle = std::make_shared<const MuscleAt>(std::move(record));
   const auto add = [&](const char* what, base::Dimension unit, const char* doc,
                        double (MuscleAt::*value)(const NodeView&) const) {
@@ -58,9 +71,16 @@ void add_muscle_observables(MeshedMuscleRecord record, model::Model& model) {
   add("field", dim::field, "nominal field: voltage over reference length", &MuscleAt::field);
   add("true_field", dim::field, "field in the deformed muscle, its mean along the line of the ends",
       &MuscleAt::true_field);
-  if (!has_layers) return;
-  add("layer_voltage", dim::voltage, "voltage of one layer", &MuscleAt::layer_voltage);
-  add("charge", dim::charge, "charge on one layer", &MuscleAt::charge);
+  if (has_layers) {
+    add("layer_voltage", dim::voltage, "voltage of one layer", &MuscleAt::layer_voltage);
+    add("charge", dim::charge, "charge on one layer", &MuscleAt::charge);
+  }
+  if (!is_driven || !wanted.any()) return;
+  if (has_layers && wanted.capacitance) {
+    add("capacitance", dim::capacitance, "charge a voltage of one layer at this shape", &MuscleAt::capacitance);
+  }
+  model::add_terminal("muscles/" + name, {.values = [muscle](const NodeView& at) { return muscle->terminal(at); }},
+                      wanted, model);
 }
 
 }  // namespace muldi::build

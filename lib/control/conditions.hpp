@@ -1,25 +1,31 @@
 #pragma once
 /// Conditions on the state at one node and along the path, resolved to unknowns of the model.
 ///
-/// Joint coordinates are addressed by their place in the minimal velocities (`rate`); only slides and angles of joints
-/// of the tree are coordinates of the optimisation. Balls are asked for by orientations and points.
+/// Joint coordinates are addressed by their place in the minimal velocities (`rate`); those of joints that close loops,
+/// which are no unknowns, by what computes them (`cut`). Balls are asked for by orientations and points.
 #include <Eigen/Core>
 #include <array>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "model/end_coordinate.hpp"
 #include "model/linear_point.hpp"
 
 namespace muldi::control {
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The coordinate `rate` has this value (rad or length).
+/// Computes the coordinate of a joint that closes a loop; null for joints of the tree.
+using CutJoint = std::shared_ptr<const model::EndCoordinate>;
+
+/// The coordinate `rate` or `cut` has this value (rad or length).
 struct CoordinateTarget {
   std::string name;  ///< as users read it, e.g. "joints.hinge"
   int rate = 0;
+  CutJoint cut = {};
   double value = 0.0;
 };
 
@@ -63,6 +69,7 @@ struct EndCondition {
 struct CoordinateLimit {
   std::string name;
   int rate = 0;
+  CutJoint cut = {};
   double lower = -infinity;
   double upper = infinity;
 };

@@ -17,6 +17,8 @@ Eigen::MatrixXd EndPiece::A() const { return bend().transpose() * D_ + at_.gradi
 
 double EndPiece::along() const { return at_.gradient.dot(point_.a(piece_.entries)); }
 
+void EndPiece::add_value(double factor, Eigen::VectorXd& y) const { y(piece_.entries) += factor * at_.gradient; }
+
 void EndPiece::add_curvature(double factor, Eigen::MatrixXd& out) const {
   out(piece_.columns, piece_.columns) += factor * D_.transpose() * at_.hessian * D_;
 }

@@ -22,6 +22,8 @@ class EndPiece {
   Eigen::MatrixXd A() const;
   /// alpha.
   double along() const;
+  /// y += factor g (n_q).
+  void add_value(double factor, Eigen::VectorXd& y) const;
   /// out += factor d2c/dtheta2 (n_v, n_v).
   void add_curvature(double factor, Eigen::MatrixXd& out) const;
   /// y += by_value g + force c_qq a (n_q); out += by_value d2c/dtheta2 + force d2 alpha/dtheta2.

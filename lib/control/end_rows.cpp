@@ -63,6 +63,7 @@ void EndRows::fix_coordinates() {
     for (Eigen::Index k = 0; k < n_v_; ++k) fixed_[static_cast<std::size_t>(k)] = theta[k];
   }
   for (const CoordinateTarget& target : condition.coordinates) {
+    if (target.cut) continue;
     auto& value = fixed_[static_cast<std::size_t>(target.rate)];
     const double size = setup_.sizes.theta[target.rate];
     if (value && std::abs(*value - target.value) > 1e-9 * size) {
@@ -78,7 +79,7 @@ void EndRows::list_rows() {
     condition_of_.assign(static_cast<std::size_t>(n_loop_), 0);
   }
   const auto add = [&](const model::LinearPoint& point, int component, double target, double scale) {
-    linear_.push_back({point, component, target, scale, names_.size() - 1});
+    linear_.push_back({point, component, target, scale});
     condition_of_.push_back(names_.size() - 1);
   };
   for (const PointTarget& target : setup_.condition.points) {
@@ -93,6 +94,14 @@ void EndRows::list_rows() {
     for (int d = 0; d < 3; ++d) {
       for (int k = 0; k < 3; ++k) add(target.directors[static_cast<std::size_t>(d)], k, target.value(k, d), 1.0);
     }
+  }
+  for (const CoordinateTarget& target : setup_.condition.coordinates) {
+    if (!target.cut) continue;
+    names_.push_back(setup_.where + "." + target.name);
+    condition_of_.push_back(names_.size() - 1);
+    cut_.push_back({.coordinate = {*target.cut, *chart_},
+                    .target = target.value,
+                    .scale = target.cut->is_angle() ? 1.0 : 1.0 / setup_.sizes.length});
   }
   if (!has_equilibrium()) return;
   names_.push_back(setup_.where + ".equilibrium");
@@ -126,6 +135,7 @@ Eigen::VectorXd EndRows::raw_values() {
   }
   Eigen::Index at = n_loop_;
   for (const LinearRow& row : linear_) R[at++] = row.scale * (row.point.value(point_.q)[row.component] - row.target);
+  for (const CutRow& row : cut_) R[at++] = row.scale * row.coordinate.offset(point_, row.target);
   if (has_equilibrium()) {
     R.tail(n_v_) = force_scale_.cwiseProduct(point_.D.transpose() * bracket_ + forces_.on_rates);
   }
@@ -195,6 +205,14 @@ void EndRows::find_pose() {
   if (least > pose_tolerance && (all_fixed() || !has_equilibrium())) blame(raw_values());
 }
 
+double EndRows::scale_of(Eigen::Index raw_row) const {
+  auto at = static_cast<std::size_t>(raw_row - n_loop_);
+  if (raw_row < n_loop_) return 0.0;
+  if (at < linear_.size()) return linear_[at].scale;
+  at -= linear_.size();
+  return at < cut_.size() ? cut_[at].scale : 0.0;
+}
+
 void EndRows::blame(const Eigen::VectorXd& residual) {
   std::vector<std::string> conditions;
   for (const auto& name : names_) {
@@ -203,12 +221,10 @@ void EndRows::blame(const Eigen::VectorXd& residual) {
   Eigen::Index worst = 0;
   residual.cwiseAbs().maxCoeff(&worst);
   const std::string& name = names_[condition_of_[static_cast<std::size_t>(worst)]];
-  const bool linear = worst >= n_loop_ && worst < n_loop_ + static_cast<Eigen::Index>(linear_.size());
   std::string why = "cannot be fulfilled";
-  if (linear) {
-    const LinearRow& row = linear_[static_cast<std::size_t>(worst - n_loop_)];
+  if (const double scale = scale_of(worst); scale > 0.0) {
     why = "cannot be reached: the nearest pose that was found misses it by " +
-          base::number_text(std::abs(residual[worst]) / row.scale, 4);
+          base::number_text(std::abs(residual[worst]) / scale, 4);
     if (name.find("orientations") != std::string::npos) why += " in a direction cosine";
   } else if (has_equilibrium() && worst >= residual.size() - n_v_) {
     const auto coordinate = worst - (residual.size() - n_v_);

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "control/pieces.hpp"
+#include "control/cut_coordinate.hpp"
 #include "control/problem.hpp"
 
 namespace muldi::control {
@@ -65,7 +65,12 @@ class EndRows {
     int component = 0;
     double target = 0.0;
     double scale = 1.0;
-    std::size_t condition = 0;
+  };
+
+  struct CutRow {
+    CutCoordinate coordinate;
+    double target = 0.0;
+    double scale = 1.0;
   };
 
   void fix_coordinates();
@@ -81,8 +86,10 @@ class EndRows {
   void blame(const Eigen::VectorXd& residual);
   model::IntervalPoint point_at_rest() const;
   void evaluate_forces();
-  /// Weights of q in nu . R of the points and directors.
-  Eigen::VectorXd linear_weights(const Eigen::VectorXd& raw) const;
+  /// Adds what the points, directors and coordinates of cut joints have in nu . R: weights of q, second derivatives.
+  void add_pose_hessian(const Eigen::VectorXd& raw, Eigen::VectorXd& y, Eigen::MatrixXd& H) const;
+  /// Scale of a raw row that is about points, directors or coordinates of cut joints; 0 of others.
+  double scale_of(Eigen::Index raw_row) const;
   void add_loop_hessian(const Eigen::VectorXd& on_rows, Eigen::VectorXd& y, Eigen::MatrixXd& H,
                         Eigen::MatrixXd& H_lambda);
   Eigen::MatrixXd stiffness();
@@ -94,6 +101,7 @@ class EndRows {
   Eigen::Index n_loop_ = 0;  // rows of the loops
   std::vector<std::optional<double>> fixed_;
   std::vector<LinearRow> linear_;
+  std::vector<CutRow> cut_;                // after the linear ones
   std::vector<std::string> names_;         // of conditions
   std::vector<std::size_t> condition_of_;  // of raw rows
   Eigen::VectorXd force_scale_;

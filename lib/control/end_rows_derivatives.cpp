@@ -127,6 +127,7 @@ Eigen::MatrixXd EndRows::raw_jacobian(Eigen::MatrixXd& by_lambda) {
     project_point(row.point, point_.D, block);
     out.row(at++) = row.scale * block.row(row.component);
   }
+  for (const CutRow& row : cut_) out.row(at++) = row.scale * row.coordinate.gradient(point_);
   if (has_equilibrium()) {
     out.bottomRows(n_v_) = force_scale_.asDiagonal() * stiffness();
     if (n_loop_ > 0) by_lambda.bottomRows(n_v_) = -(force_scale_.asDiagonal() * out.topRows(n_loop_).transpose());
@@ -149,13 +150,12 @@ Eigen::MatrixXd EndRows::free_jacobian() {
   return out;
 }
 
-Eigen::VectorXd EndRows::linear_weights(const Eigen::VectorXd& raw) const {
-  Eigen::VectorXd y = zero_q_;
+void EndRows::add_pose_hessian(const Eigen::VectorXd& raw, Eigen::VectorXd& y, Eigen::MatrixXd& H) const {
   Eigen::Index at = n_loop_;
   for (const LinearRow& row : linear_) {
     row.point.add_transposed(row.scale * raw[at++] * Eigen::Vector3d::Unit(row.component), y);
   }
-  return y;
+  for (const CutRow& row : cut_) row.coordinate.add_hessian(row.scale * raw[at++], point_, y, H);
 }
 
 void EndRows::add_loop_hessian(const Eigen::VectorXd& on_rows, Eigen::VectorXd& y, Eigen::MatrixXd& H,
@@ -197,7 +197,8 @@ void EndRows::add_hessian(const Eigen::VectorXd& nu, Eigen::MatrixXd& H, Eigen::
   chart_->evaluate_along(theta_, direction, point_);
   StaticSink sink(setup_.pieces, point_, point_.a, true);
   sink.out = Eigen::MatrixXd::Zero(n_v_, n_v_);
-  sink.y = linear_weights(raw);
+  sink.y = zero_q_;
+  add_pose_hessian(raw, sink.y, sink.out);
   if (has_equilibrium()) {
     for (const auto& term : model_.terms) {
       term->expand(point_at_rest(), {.squared = no_squares_, .a = &point_.a, .b = &zero_q_}, sink);

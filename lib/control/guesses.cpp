@@ -16,7 +16,9 @@ Eigen::VectorXd initial_pose(const Problem& problem) {
   const auto chart = manifold.make_chart();
   Eigen::VectorXd theta(manifold.n_v());
   chart->coordinates(manifold.reference(), theta);
-  for (const CoordinateTarget& target : problem.initial.coordinates) theta[target.rate] = target.value;
+  for (const CoordinateTarget& target : problem.initial.coordinates) {
+    if (!target.cut) theta[target.rate] = target.value;
+  }
   Eigen::VectorXd x(manifold.n_x());
   chart->stored(theta, x);
   return x;

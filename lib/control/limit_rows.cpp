@@ -1,6 +1,7 @@
 #include "control/limit_rows.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace muldi::control {
@@ -20,6 +21,7 @@ std::vector<int> columns_of_muscle(const model::LimitedMuscle& muscle, const mod
 
 LimitRows::LimitRows(const Problem& problem, const Layout& layout, const model::Chart& chart, double length)
     : problem_(problem), n_steps_(layout.n_steps) {
+  add_cut_rows(problem.limits, chart, length);
   for (const PointLimit& limit : problem.limits.points) {
     for (int n = 1; n <= n_steps_; ++n) {
       for (int k = 0; k < 3; ++k) {
@@ -46,8 +48,36 @@ LimitRows::LimitRows(const Problem& problem, const Layout& layout, const model::
     add_muscle_rows(problem.limits);
   }
   for (const LimitRow& row : rows_) {
-    columns_.push_back(row.muscle < 0 ? columns_of(row.point, chart)
-                                      : columns_of_muscle(muscles_[static_cast<std::size_t>(row.muscle)], chart));
+    if (row.cut >= 0) {
+      columns_.push_back(cut_[static_cast<std::size_t>(row.cut)].columns());
+    } else if (row.muscle >= 0) {
+      columns_.push_back(columns_of_muscle(muscles_[static_cast<std::size_t>(row.muscle)], chart));
+    } else {
+      columns_.push_back(columns_of(row.point, chart));
+    }
+  }
+}
+
+void LimitRows::add_cut_rows(const PathLimits& limits, const model::Chart& chart, double length) {
+  for (const CoordinateLimit& limit : limits.coordinates) {
+    if (!limit.cut) continue;
+    // Angles are those within half a turn of the middle of the range, or of its one end.
+    const bool both = std::isfinite(limit.lower) && std::isfinite(limit.upper);
+    const double from = both                         ? 0.5 * (limit.lower + limit.upper)
+                        : std::isfinite(limit.lower) ? limit.lower
+                                                     : limit.upper;
+    if (!std::isfinite(from)) continue;
+    const double scale = limit.cut->is_angle() ? 1.0 : 1.0 / length;
+    for (int n = 1; n <= n_steps_; ++n) {
+      rows_.push_back({.name = "limits." + limit.name,
+                       .lower = scale * (limit.lower - from),
+                       .upper = scale * (limit.upper - from),
+                       .node = n,
+                       .cut = static_cast<int>(cut_.size()),
+                       .from = from,
+                       .scale = scale});
+    }
+    cut_.emplace_back(*limit.cut, chart);
   }
 }
 
@@ -123,7 +153,9 @@ Eigen::RowVectorXd LimitRows::slope(const model::LimitedMuscle& muscle, const Le
 }
 
 double LimitRows::value(const LimitRow& row, const DiscreteDynamics& dynamics, double w) const {
-  const Eigen::VectorXd& q = dynamics.node(row.node).point.q;
+  const model::ChartPoint& point = dynamics.node(row.node).point;
+  const Eigen::VectorXd& q = point.q;
+  if (row.cut >= 0) return row.scale * cut_[static_cast<std::size_t>(row.cut)].offset(point, row.from);
   if (row.muscle < 0) return row.scale * row.point.value(q)[row.component];
   const Parts p = parts(row, length(muscles_[static_cast<std::size_t>(row.muscle)], q).z, dynamics, w);
   return p.alpha[0] + p.kappa[0] * p.beta[0];
@@ -132,6 +164,11 @@ double LimitRows::value(const LimitRow& row, const DiscreteDynamics& dynamics, d
 LimitDerivatives LimitRows::derivatives(const LimitRow& row, const DiscreteDynamics& dynamics, double w) const {
   const model::ChartPoint& point = dynamics.node(row.node).point;
   LimitDerivatives out;
+  if (row.cut >= 0) {
+    out.value = value(row, dynamics, w);
+    out.by_theta = row.scale * cut_[static_cast<std::size_t>(row.cut)].gradient(point);
+    return out;
+  }
   if (row.muscle < 0) {
     Eigen::MatrixXd block(3, point.D.cols());
     project_point(row.point, point.D, block);
@@ -152,6 +189,10 @@ void LimitRows::add_hessian(const LimitRow& row, double factor, const DiscreteDy
                             DynamicsHessian& out) const {
   const auto n = static_cast<std::size_t>(row.node);
   const model::ChartPoint& point = dynamics.node(row.node).point;
+  if (row.cut >= 0) {
+    cut_[static_cast<std::size_t>(row.cut)].add_hessian(factor * row.scale, point, out.y[n], out.diagonal[n]);
+    return;
+  }
   if (row.muscle < 0) {
     row.point.add_transposed(factor * row.scale * Eigen::Vector3d::Unit(row.component), out.y[n]);
     return;

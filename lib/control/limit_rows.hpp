@@ -1,12 +1,13 @@
 #pragma once
-/// Path limits that are rows of the problem: point boxes at the nodes, fields and pull-in margins of muscles at both
-/// ends of every interval, under its control.
+/// Path limits that are rows of the problem: coordinates of loop-closing joints and point boxes at the nodes, fields
+/// and pull-in margins of muscles at both ends of every interval, under its control.
 ///
 /// With E^2 = kappa(w) a muscle's row is alpha(z) + kappa beta(z): (E Z/z)^2/e_max^2 <= 1, or Pi''(z, E)/Pi''(Z, 0) >=
 /// margin.
 #include <string>
 #include <vector>
 
+#include "control/cut_coordinate.hpp"
 #include "control/discrete_dynamics.hpp"
 
 namespace muldi::control {
@@ -21,6 +22,8 @@ struct LimitRow {
   int choice = -1;    ///< control that is sought; -1: none
   int muscle = -1;
   bool is_margin = false;
+  int cut = -1;  ///< of the coordinates of cut joints
+  double from = 0.0;
   model::LinearPoint point = {};
   int component = 0;
   double scale = 1.0;
@@ -38,7 +41,7 @@ class LimitRows {
   LimitRows(const Problem& problem, const Layout& layout, const model::Chart& chart, double length);
 
   const std::vector<LimitRow>& rows() const { return rows_; }
-  /// Coordinates that a row depends on.
+  /// Coordinates theta that a row depends on.
   const std::vector<int>& columns(std::size_t row) const { return columns_[row]; }
 
   double value(const LimitRow& row, const DiscreteDynamics& dynamics, double w) const;
@@ -58,6 +61,7 @@ class LimitRows {
     std::array<double, 3> beta;
     std::array<double, 3> kappa;
   };
+  void add_cut_rows(const PathLimits& limits, const model::Chart& chart, double length);
   void add_muscle_rows(const PathLimits& limits);
   Length length(const model::LimitedMuscle& muscle, const Eigen::VectorXd& q) const;
   Parts parts(const LimitRow& row, double z, const DiscreteDynamics& dynamics, double w) const;
@@ -66,6 +70,7 @@ class LimitRows {
 
   const Problem& problem_;
   int n_steps_ = 0;
+  std::vector<CutCoordinate> cut_;
   std::vector<model::LimitedMuscle> muscles_;
   std::vector<int> choice_of_muscle_;
   std::vector<LimitRow> rows_;

@@ -27,7 +27,7 @@ void ObjectiveSum::add_squared_change(int choice, double factor) {
 }
 
 void ObjectiveSum::add_squared_coordinate(int node, const SquaredCoordinate& term) {
-  coordinates_[static_cast<std::size_t>(node)].push_back({term.rate, term.wanted, weight_ * term.factor});
+  coordinates_[static_cast<std::size_t>(node)].push_back({term.rate, term.cut, term.wanted, weight_ * term.factor});
 }
 
 void ObjectiveSum::add_squared_point(int node, const SquaredPoint& term) {
@@ -39,8 +39,16 @@ void ObjectiveSum::add_peak(const std::vector<double>& factors) {
   for (std::size_t c = 0; c < factors.size(); ++c) peak_factors_[c] = std::max(peak_factors_[c], factors[c]);
 }
 
-std::vector<std::vector<int>> ObjectiveSum::cliques(const model::Chart& chart) const {
+std::vector<std::vector<int>> ObjectiveSum::bind(const model::Chart& chart) {
   std::vector<std::vector<int>> all;
+  cuts_.assign(coordinates_.size(), {});
+  for (std::size_t n = 0; n < coordinates_.size(); ++n) {
+    for (const SquaredCoordinate& term : coordinates_[n]) {
+      if (!term.cut) continue;
+      cuts_[n].push_back({.coordinate = {*term.cut, chart}, .wanted = term.wanted, .factor = term.factor});
+      all.push_back(cuts_[n].back().coordinate.columns());
+    }
+  }
   for (const auto& points : points_) {
     for (const SquaredPoint& term : points) all.push_back(columns_of(term.point, chart));
   }
@@ -72,7 +80,12 @@ double ObjectiveSum::value(const Eigen::VectorXd& unknowns, const Layout& layout
   }
   for (int n = 0; n <= layout.n_steps; ++n) {
     for (const SquaredCoordinate& term : coordinates_[static_cast<std::size_t>(n)]) {
+      if (term.cut) continue;
       const double off = dynamics.node(n).theta[term.rate] - term.wanted;
+      sum += term.factor * off * off;
+    }
+    for (const SquaredCut& term : cuts_[static_cast<std::size_t>(n)]) {
+      const double off = term.coordinate.offset(dynamics.node(n).point, term.wanted);
       sum += term.factor * off * off;
     }
     for (const SquaredPoint& term : points_[static_cast<std::size_t>(n)]) {
@@ -107,7 +120,12 @@ void ObjectiveSum::add_gradient(const Eigen::VectorXd& unknowns, const Layout& l
   for (int n = 0; n <= layout.n_steps; ++n) {
     const DynamicsNode& node = dynamics.node(n);
     for (const SquaredCoordinate& term : coordinates_[static_cast<std::size_t>(n)]) {
-      out[layout.theta(n, term.rate)] += 2.0 * term.factor * (node.theta[term.rate] - term.wanted);
+      if (!term.cut) out[layout.theta(n, term.rate)] += 2.0 * term.factor * (node.theta[term.rate] - term.wanted);
+    }
+    for (const SquaredCut& term : cuts_[static_cast<std::size_t>(n)]) {
+      const double off = term.coordinate.offset(node.point, term.wanted);
+      out.segment(layout.theta(n, 0), layout.n_v) +=
+          2.0 * term.factor * off * term.coordinate.gradient(node.point).transpose();
     }
     Eigen::MatrixXd block(3, layout.n_v);
     for (const SquaredPoint& term : points_[static_cast<std::size_t>(n)]) {
@@ -141,7 +159,14 @@ void ObjectiveSum::add_hessian(double factor, const Layout& layout, const Discre
     const auto at = static_cast<std::size_t>(n);
     const DynamicsNode& node = dynamics.node(n);
     for (const SquaredCoordinate& term : coordinates_[at]) {
-      out.diagonal[at](term.rate, term.rate) += 2.0 * factor * term.factor;
+      if (!term.cut) out.diagonal[at](term.rate, term.rate) += 2.0 * factor * term.factor;
+    }
+    for (const SquaredCut& term : cuts_[at]) {
+      const double weight = 2.0 * factor * term.factor;
+      const Eigen::RowVectorXd gradient = term.coordinate.gradient(node.point);
+      out.diagonal[at].noalias() += weight * gradient.transpose() * gradient;
+      term.coordinate.add_hessian(weight * term.coordinate.offset(node.point, term.wanted), node.point, out.y[at],
+                                  out.diagonal[at]);
     }
     for (const SquaredPoint& term : points_[at]) {
       const double off = term.point.value(node.point.q)[term.component] - term.wanted;

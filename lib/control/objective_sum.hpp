@@ -2,13 +2,15 @@
 /// The weighted sum of objectives as the terms that the transcription knows.
 #include <vector>
 
+#include "control/cut_coordinate.hpp"
 #include "control/discrete_dynamics.hpp"
 
 namespace muldi::control {
 
-/// factor (theta_rate - wanted)^2 at one node.
+/// factor (theta_rate - wanted)^2 at one node, or of the coordinate of a cut joint.
 struct SquaredCoordinate {
   int rate = 0;
+  CutJoint cut = {};
   double wanted = 0.0;
   double factor = 1.0;
 };
@@ -46,8 +48,9 @@ class ObjectiveSum {
   bool has_kinetic_energy() const { return kinetic_ != 0.0; }
   bool has_peak() const { return peak_weight_ != 0.0; }
   const std::vector<double>& peak_factors() const { return peak_factors_; }
-  /// Coordinates of q_n beyond diagonal entries that squared points couple.
-  std::vector<std::vector<int>> cliques(const model::Chart& chart) const;
+  /// Finds what squared points and coordinates of cut joints depend on: sets of coordinates of a node that they couple.
+  /// To be called before values and derivatives are asked for.
+  std::vector<std::vector<int>> bind(const model::Chart& chart);
   /// Whether a term needs the duration to be fixed.
   bool follows_time() const;
 
@@ -73,6 +76,13 @@ class ObjectiveSum {
   std::vector<double> peak_factors_;
   std::vector<std::vector<SquaredCoordinate>> coordinates_;  // of every node
   std::vector<std::vector<SquaredPoint>> points_;
+
+  struct SquaredCut {
+    CutCoordinate coordinate;
+    double wanted = 0.0;
+    double factor = 1.0;
+  };
+  std::vector<std::vector<SquaredCut>> cuts_;  // those of coordinates_, bound to the chart
 };
 
 }  // namespace muldi::control

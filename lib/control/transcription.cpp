@@ -156,6 +156,7 @@ void Transcription::set_bounds(const Trajectory&) {
   bounds_.c_lower = bounds_.c_upper = Eigen::VectorXd::Zero(n_rows_);
   for (int n = 1; n <= layout_.n_steps; ++n) {
     for (const CoordinateLimit& limit : problem_.limits.coordinates) {
+      if (limit.cut) continue;
       const int at = layout_.theta(n, limit.rate);
       bounds_.x_lower[at] = std::max(bounds_.x_lower[at], limit.lower);
       bounds_.x_upper[at] = std::min(bounds_.x_upper[at], limit.upper);
@@ -279,7 +280,7 @@ void Transcription::find_patterns() {
   };
   for (const auto& clique : dynamics_->pieces().cliques) add(clique);
   const model::Chart& chart = *dynamics_->node(0).chart;
-  for (const auto& clique : objectives_.cliques(chart)) add(clique);
+  for (const auto& clique : objectives_.bind(chart)) add(clique);
   for (std::size_t i = 0; i < limits_->rows().size(); ++i) add(limits_->columns(i));
   for (int row = 0; row < turns_->n_rows(); ++row) add(turns_->columns(row));
   std::vector<int> all;

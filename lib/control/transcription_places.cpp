@@ -99,7 +99,7 @@ Transcription::Place Transcription::variable_place(int variable) const {
     const int local = variable - first;
     if (local < layout_.n_v) {
       for (const CoordinateLimit& limit : problem_.limits.coordinates) {
-        if (limit.rate == local) return {"limits." + limit.name, n};
+        if (!limit.cut && limit.rate == local) return {"limits." + limit.name, n};
       }
       return {"", n};
     }

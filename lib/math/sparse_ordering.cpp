@@ -54,6 +54,7 @@ std::vector<int> nested_dissection_order(const NodeGraph& graph) {
   std::vector<int> position(graph.weights.size());
   const int status = metis.node_nd(&n, copy.start.data(), copy.neighbours.data(), copy.weights.data(), options,
                                    order.data(), position.data());
+  if (status == METIS_ERROR_MEMORY) throw std::bad_alloc();
   MULDI_EXPECT(status == METIS_OK, "METIS accepts every graph that fits into memory");
   return order;
 }

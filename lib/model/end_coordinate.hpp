@@ -19,6 +19,9 @@ class EndCoordinate {
 
   /// The n unknowns of q that c depends on.
   virtual std::vector<int> unknowns() const = 0;
+  virtual bool is_angle() const = 0;
+  /// c(q) - from, of angles the short way round.
+  virtual double offset(const Eigen::VectorXd& q, double from) const = 0;
   /// c(q1) - c(q0), of angles the short way round.
   virtual double advance(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1) const = 0;
   /// `a` (n_q): the direction of the slope; null: none is asked for.

@@ -46,6 +46,12 @@ class ProjectedSolver {
   virtual std::string name() const = 0;
 };
 
+/// A body that turns between two configurations.
+struct Turn {
+  double angle = 0.0;  ///< rad
+  int node = -1;       ///< of the model; none: nothing turns
+};
+
 /// Rank of the loop rows B = G T at one configuration, by pivoted QR of B in natural increments.
 struct LoopRank {
   double regularity = 1.0;  ///< smallest over largest pivot of the n_c that count: 0 where rank is lost
@@ -119,8 +125,11 @@ class Manifold {
   /// True if the loop rows lose rank on the way between two frames: det(B_from B_to^T) < 0 with the basis chosen at
   /// `from`, which is the sum of the products of the minors of all rows (Cauchy and Binet).
   virtual bool loops_cross(const Frame& from, const Frame& to) const = 0;
-  /// The largest angle by which a body turns between two configurations (step-size limit, numerics 1.8).
-  virtual double largest_rotation(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to) const = 0;
+  /// The largest angle by which a body turns between two configurations (step-size limit, numerics 1.8), and which.
+  virtual Turn largest_turn(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to) const = 0;
+  double largest_rotation(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to) const {
+    return largest_turn(q_from, q_to).angle;
+  }
 };
 
 }  // namespace muldi::model

@@ -82,6 +82,11 @@ std::string Model::inadmissible_anywhere(const Eigen::VectorXd& q) const {
   return reason;
 }
 
+std::string Model::body_at(int node) const {
+  const auto at = static_cast<std::size_t>(node);
+  return node >= 0 && at < body_names.size() ? "body '" + body_names[at] + "'" : "a body";
+}
+
 std::string Model::advice(const NodePoint& at) const {
   std::string sentence;
   each([&](const IntervalTerm& term) {

@@ -11,6 +11,7 @@
 #include "model/manifold.hpp"
 #include "model/observable.hpp"
 #include "model/substructure.hpp"
+#include "model/terminal.hpp"
 
 namespace muldi::model {
 
@@ -23,6 +24,7 @@ struct Control {
 
 struct Model {
   std::vector<int> node_sizes;                  ///< unknowns a node (slice) of q
+  std::vector<std::string> body_names;          ///< the bodies are the first nodes; for messages, may be empty
   std::unique_ptr<math::BlockPattern> pattern;  ///< blocks that the terms write
   std::vector<std::unique_ptr<IntervalTerm>> terms;
   std::vector<std::unique_ptr<Substructure>> substructures;  ///< their slices of q follow those of the manifold
@@ -30,6 +32,8 @@ struct Model {
   std::vector<Control> controls;
   std::vector<Observable> observables;
   std::vector<FieldHistory> histories;
+  std::vector<Terminal> terminals = {};  ///< of the sources, where a scene records their energies
+  bool books_supply = false;             ///< runs keep accounts of what the terminals are supplied with
 
   /// Requests the pattern of all terms and binds them, places the slices of the substructures; call once, after the
   /// last of them.
@@ -65,6 +69,8 @@ struct Model {
   std::string inadmissible(const Eigen::VectorXd& q) const;
   /// The same with the substructures, which costs as much as their forces.
   std::string inadmissible_anywhere(const Eigen::VectorXd& q) const;
+  /// How messages call the body that is this node: by its name, if the model knows it.
+  std::string body_at(int node) const;
   /// The first advice of a term, or empty.
   std::string advice(const NodePoint& at) const;
 

@@ -25,6 +25,8 @@ struct NodeView {
   std::span<const double> u;                ///< controls of the interval that ends here (at t_0: of the first)
   /// Stage unknowns of the interval that begins here (n_y), of which the multipliers belong to this node; null: y.
   const Eigen::VectorXd* y_after = nullptr;
+  /// Accounts of the electric sources (model/supply.hpp), one a terminal; empty where none are kept.
+  std::span<const double> accounts = {};
 };
 
 /// One recorded series: a fixed number of doubles a row.

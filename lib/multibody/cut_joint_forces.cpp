@@ -3,18 +3,11 @@
 namespace muldi::multibody {
 namespace {
 
-/// The coordinate in the middle of the interval and its mean rate, 0 at rest.
-struct MiddleOf {
-  double position;
-  double rate = 0.0;
-
-  MiddleOf(const model::IntervalPoint& at, const JointCoordinate& coordinate) : position(coordinate.value(at.q1)) {
-    if (!(at.dt > 0.0)) return;
-    const double advance = coordinate.advance(at.q0, at.q1);
-    position = coordinate.value(at.q0) + 0.5 * advance;
-    rate = advance / at.dt;
-  }
-};
+JointForce::Motion middle_of(const model::IntervalPoint& at, const JointCoordinate& coordinate) {
+  if (!(at.dt > 0.0)) return {.position = coordinate.value(at.q1)};
+  const double advance = coordinate.advance(at.q0, at.q1);
+  return {.position = coordinate.value(at.q0) + 0.5 * advance, .rate = advance / at.dt};
+}
 
 }  // namespace
 
@@ -37,8 +30,7 @@ void CutJointForces::bind(const math::BlockPattern& pattern) {
 
 void CutJointForces::add_forces(const model::IntervalPoint& at, model::IntervalForces& out) const {
   for (const CutJointForce& force : forces_) {
-    const MiddleOf middle(at, force.coordinate);
-    const double Q = force.law.respond(middle.position, middle.rate, at.u).force;
+    const double Q = force.law.respond(middle_of(at, force.coordinate), at.u).force;
     if (at.dt > 0.0) {
       force.coordinate.add_gradient(at.q0, 0.5 * at.dt * Q, out.begin);
       force.coordinate.add_gradient(at.q1, 0.5 * at.dt * Q, out.end);
@@ -65,8 +57,7 @@ void CutJointForces::add_tangent(const model::IntervalPoint& at, const model::Ta
   if (weights.qq == 0.0 && weights.qv == 0.0) return;
   for (std::size_t f = 0; f < forces_.size(); ++f) {
     const CutJointForce& force = forces_[f];
-    const MiddleOf middle(at, force.coordinate);
-    const JointForce::Response r = force.law.respond(middle.position, middle.rate, at.u);
+    const JointForce::Response r = force.law.respond(middle_of(at, force.coordinate), at.u);
     // The begin of the interval is fixed: no Hessian of theta is in the matrix of a step.
     const JointCoordinate::LocalVector rows = force.coordinate.gradient(at.q0);
     const JointCoordinate::LocalVector columns = force.coordinate.gradient(at.q1);
@@ -90,9 +81,8 @@ bool CutJointForces::expand(const model::IntervalPoint& at, const model::Expansi
   for (const CutJointForce& force : forces_) {
     const int control = force.law.control;
     if (control >= 0 && request.squared[static_cast<std::size_t>(control)] != 0.0) return false;
-    const MiddleOf middle(at, force.coordinate);
-    const JointForce::Response r = force.law.respond(middle.position, middle.rate, at.u);
-    tangent.row(0) << r.by_position, r.by_rate, control < 0 ? 0.0 : force.law.control_factor;
+    const JointForce::Response r = force.law.respond(middle_of(at, force.coordinate), at.u);
+    tangent.row(0) = force.law.derivatives(r);
     sink.add({.coordinate = &force.coordinate}, {.controls = {&control, 1},
                                                  .tangent = tangent,
                                                  .hessian = request.a != nullptr ? &hessian : nullptr,
@@ -104,10 +94,7 @@ bool CutJointForces::expand(const model::IntervalPoint& at, const model::Expansi
 model::IntervalWork CutJointForces::work(const model::IntervalPoint& at) const {
   model::IntervalWork work;
   for (const CutJointForce& force : forces_) {
-    const MiddleOf middle(at, force.coordinate);
-    const JointForce::Response r = force.law.respond(middle.position, middle.rate, at.u);
-    work.dissipated -= at.dt * r.damping_force * middle.rate;
-    work.external += at.dt * r.drive * middle.rate;
+    force.law.add_work(middle_of(at, force.coordinate), at.u, at.dt, work);
   }
   return work;
 }

@@ -169,9 +169,13 @@ std::vector<int> JointCoordinate::unknowns() const {
   return all;
 }
 
-double JointCoordinate::advance(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1) const {
-  const double difference = value(q1) - value(q0);
+double JointCoordinate::offset(const Eigen::VectorXd& q, double from) const {
+  const double difference = value(q) - from;
   return is_angle_ ? std::remainder(difference, 2.0 * std::numbers::pi) : difference;
+}
+
+double JointCoordinate::advance(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1) const {
+  return offset(q1, value(q0));
 }
 
 void JointCoordinate::differentiate(const Eigen::VectorXd& q, const Eigen::VectorXd* a,

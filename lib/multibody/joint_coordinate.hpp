@@ -16,7 +16,6 @@ class JointCoordinate final : public model::EndCoordinate {
   /// `motion` must not be a ball.
   JointCoordinate(const Joint& joint, const Motion& motion);
 
-  bool is_angle() const { return is_angle_; }
   /// Angles are in (-pi, pi].
   double value(const Eigen::VectorXd& q) const;
   double rate(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const;
@@ -35,6 +34,8 @@ class JointCoordinate final : public model::EndCoordinate {
   LocalMatrix hessian_slope(const Eigen::VectorXd& q, const Eigen::VectorXd& a) const;
 
   std::vector<int> unknowns() const override;
+  bool is_angle() const override { return is_angle_; }
+  double offset(const Eigen::VectorXd& q, double from) const override;
   double advance(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1) const override;
   void differentiate(const Eigen::VectorXd& q, const Eigen::VectorXd* a, model::EndDerivatives& out) const override;
 

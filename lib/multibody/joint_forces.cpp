@@ -5,22 +5,16 @@
 namespace muldi::multibody {
 namespace {
 
-/// The coordinate in the middle of the interval and its mean rate, 0 at rest.
-struct MiddleOf {
-  double position;
-  double rate;
-
-  MiddleOf(const model::IntervalPoint& at, int coordinate) {
-    const double begin = at.x0[static_cast<std::size_t>(coordinate)];
-    const double end = at.x1[static_cast<std::size_t>(coordinate)];
-    position = 0.5 * (begin + end);
-    rate = at.dt > 0.0 ? (end - begin) / at.dt : 0.0;
-  }
-};
+JointForce::Motion middle_of(const model::IntervalPoint& at, int coordinate) {
+  const double begin = at.x0[static_cast<std::size_t>(coordinate)];
+  const double end = at.x1[static_cast<std::size_t>(coordinate)];
+  return {.position = 0.5 * (begin + end), .rate = at.dt > 0.0 ? (end - begin) / at.dt : 0.0};
+}
 
 }  // namespace
 
-JointForce::Response JointForce::respond(double position, double rate, std::span<const double> u) const {
+JointForce::Response JointForce::respond(const Motion& middle, std::span<const double> u) const {
+  const auto [position, rate] = middle;
   Response r{.force = 0.0,
              .by_position = -stiffness,
              .by_rate = -damping,
@@ -39,6 +33,16 @@ JointForce::Response JointForce::respond(double position, double rate, std::span
   if (control >= 0) r.drive += control_factor * u[static_cast<std::size_t>(control)];
   r.force = elastic + r.damping_force + r.drive;
   return r;
+}
+
+Eigen::RowVector3d JointForce::derivatives(const Response& response) const {
+  return {response.by_position, response.by_rate, control < 0 ? 0.0 : control_factor};
+}
+
+void JointForce::add_work(const Motion& middle, std::span<const double> u, double dt, model::IntervalWork& work) const {
+  const Response r = respond(middle, u);
+  work.dissipated -= dt * r.damping_force * middle.rate;
+  work.external += dt * r.drive * middle.rate;
 }
 
 double JointForce::potential(double position) const {
@@ -60,8 +64,7 @@ JointForces::JointForces(std::vector<TreeJointForce> forces) : forces_(std::move
 void JointForces::add_forces(const model::IntervalPoint& at, model::IntervalForces& out) const {
   if (at.x0.empty()) return;
   for (const TreeJointForce& force : forces_) {
-    const MiddleOf middle(at, force.coordinate);
-    out.on_rates[force.rate] += force.law.respond(middle.position, middle.rate, at.u).force;
+    out.on_rates[force.rate] += force.law.respond(middle_of(at, force.coordinate), at.u).force;
   }
 }
 
@@ -69,8 +72,7 @@ void JointForces::add_rate_tangent(const model::IntervalPoint& at, const model::
                                    Eigen::VectorXd& diagonal) const {
   if (weights.qq == 0.0 && weights.qv == 0.0) return;
   for (const TreeJointForce& force : forces_) {
-    const MiddleOf middle(at, force.coordinate);
-    const JointForce::Response r = force.law.respond(middle.position, middle.rate, at.u);
+    const JointForce::Response r = force.law.respond(middle_of(at, force.coordinate), at.u);
     diagonal[force.rate] += weights.qq * r.by_position + weights.qv * r.by_rate;
   }
 }
@@ -88,9 +90,8 @@ bool JointForces::expand(const model::IntervalPoint& at, const model::ExpansionR
   for (const TreeJointForce& force : forces_) {
     const int control = force.law.control;
     if (control >= 0 && request.squared[static_cast<std::size_t>(control)] != 0.0) return false;
-    const MiddleOf middle(at, force.coordinate);
-    const JointForce::Response r = force.law.respond(middle.position, middle.rate, at.u);
-    tangent.row(0) << r.by_position, r.by_rate, control < 0 ? 0.0 : force.law.control_factor;
+    const JointForce::Response r = force.law.respond(middle_of(at, force.coordinate), at.u);
+    tangent.row(0) = force.law.derivatives(r);
     sink.add({.rate = force.rate},
              {.controls = {&control, 1}, .tangent = tangent, .hessian = request.a != nullptr ? &hessian : nullptr});
   }
@@ -100,10 +101,7 @@ bool JointForces::expand(const model::IntervalPoint& at, const model::ExpansionR
 model::IntervalWork JointForces::work(const model::IntervalPoint& at) const {
   model::IntervalWork work;
   for (const TreeJointForce& force : forces_) {
-    const MiddleOf middle(at, force.coordinate);
-    const JointForce::Response r = force.law.respond(middle.position, middle.rate, at.u);
-    work.dissipated -= at.dt * r.damping_force * middle.rate;
-    work.external += at.dt * r.drive * middle.rate;
+    force.law.add_work(middle_of(at, force.coordinate), at.u, at.dt, work);
   }
   return work;
 }

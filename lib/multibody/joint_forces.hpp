@@ -5,7 +5,9 @@
 ///     L_d = -dt V(theta_mid),  theta_mid = (theta_n + theta_{n+1})/2,  theta' = (theta_{n+1} - theta_n)/dt.
 /// Either end of the interval gets dt/2 Q grad theta, which T^T takes to dt/2 Q on the joint's rate: the tangent is a
 /// diagonal. As theta does not see rigid motions, the momentum maps are kept.
+#include <Eigen/Core>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,7 +42,16 @@ struct JointForce {
     double damping_force;  ///< the part that dissipates
     double drive;          ///< the part that does external work
   };
-  Response respond(double position, double rate, std::span<const double> u) const;
+  /// The coordinate in the middle of an interval and its mean rate, 0 at rest.
+  struct Motion {
+    double position = 0.0;
+    double rate = 0.0;
+  };
+  Response respond(const Motion& middle, std::span<const double> u) const;
+  /// [dQ/dtheta, dQ/dtheta', dQ/du] of the response.
+  Eigen::RowVector3d derivatives(const Response& response) const;
+  /// What damping and drive do in an interval of length dt.
+  void add_work(const Motion& middle, std::span<const double> u, double dt, model::IntervalWork& work) const;
   double potential(double position) const;
 };
 

@@ -309,13 +309,18 @@ bool TreeManifold::loops_cross(const model::Frame& from, const model::Frame& to)
   return begin.loop_product.determinant() < 0.0;
 }
 
-double TreeManifold::largest_rotation(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to) const {
+model::Turn TreeManifold::largest_turn(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to) const {
   // |d_i' - d_i|^2 summed over the directors is 8 sin^2(angle/2).
   double largest = 0.0;
+  model::Turn turn;
   for (int body = 0; body < tree_.n_bodies; ++body) {
-    largest = std::max(largest, (q_to.segment<9>(12 * body + 3) - q_from.segment<9>(12 * body + 3)).squaredNorm());
+    const double squares = (q_to.segment<9>(12 * body + 3) - q_from.segment<9>(12 * body + 3)).squaredNorm();
+    if (squares <= largest) continue;
+    largest = squares;
+    turn.node = body;
   }
-  return 2.0 * std::asin(std::min(1.0, std::sqrt(largest / 8.0)));
+  turn.angle = 2.0 * std::asin(std::min(1.0, std::sqrt(largest / 8.0)));
+  return turn;
 }
 
 }  // namespace muldi::multibody

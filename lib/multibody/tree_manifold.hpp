@@ -45,7 +45,7 @@ class TreeManifold final : public model::Manifold {
   std::unique_ptr<model::ProjectedSolver> make_solver(const math::BlockPattern& pattern,
                                                       const std::string& kind) const override;
   bool loops_cross(const model::Frame& from, const model::Frame& to) const override;
-  double largest_rotation(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to) const override;
+  model::Turn largest_turn(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to) const override;
 
   const KinematicTree& tree() const { return tree_; }
   int n_plain() const { return n_plain_; }

@@ -8,6 +8,7 @@
 ///     f  = -3/2 eta V zd / z^2
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -160,11 +161,19 @@ struct LumpedModel {
   static constexpr std::span<const std::string_view> quantities = field_quantities;
 
   Inertia inertia = Inertia::consistent;
+  double end_factor = 0.0;  ///< k of stiffness_of_ends
   Replacements replacements = {};
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit& visit) {
     visit(base::Field{.key = "inertia", .doc = "inertia of the muscle", .need = base::Need::optional}, self.inertia);
+    visit(base::Field{.key = "end_factor",
+                      .doc = "k of the factor 1 + k d/Z on stiffness and viscosity, d the diameter of the section's "
+                             "area and Z the reference length, by which plates on the ends that keep them from "
+                             "widening stiffen the muscle; 0: free ends",
+                      .range = {.min = -0.1},  // below 0 so that a fit may begin there
+                      .need = base::Need::optional},
+          self.end_factor);
     Replacements::describe(self.replacements, visit);
   }
 
@@ -175,8 +184,9 @@ struct LumpedModel {
 
   LumpedDea element(MuscleGiven given) const {
     replacements.apply(given);
-    return {.shear_modulus = given.shear_modulus,
-            .viscosity = given.viscosity,
+    const double ends = stiffness_of_ends(given);
+    return {.shear_modulus = ends * given.shear_modulus,
+            .viscosity = ends * given.viscosity,
             .density = given.density,
             .length = given.length,
             .area = given.section.area(),
@@ -185,6 +195,16 @@ struct LumpedModel {
             // With the centre at rest both inertias are the same, and this one is a function of the length alone.
             .inertia = given.isolated ? Inertia::thesis : inertia,
             .layer_thickness = given.layer_thickness};
+  }
+  /// 1 + k d/Z: what plates on the ends add to the stiffness of a slender bar.
+  ///
+  /// By Saint-Venant's principle the plates disturb the uniform stretch only within about a diameter d of each end, in
+  /// zones whose shape does not depend on the length Z. There the bar is stretched less, as if it were shorter by k d
+  /// for some number k: force over stretch grows by Z/(Z - k d) = 1 + k d/Z in the first order of d/Z. Elastic and
+  /// viscous stress of an incompressible bar have the same field of deformation, so the factor is that of both. The
+  /// blocked force is not changed, for the uniform state at stretch 1 does not widen: the electric law stays as it is.
+  double stiffness_of_ends(const MuscleGiven& given) const {
+    return 1.0 + end_factor * 2.0 * std::sqrt(given.section.area() / std::numbers::pi) / given.length;
   }
   /// The control is the nominal field.
   static double control_factor(std::string_view quantity, const MuscleGiven& given) {

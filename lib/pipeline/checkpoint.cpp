@@ -39,6 +39,9 @@ void each_vector(State& state, const model::Model& model, const Visit& visit) {
 // The other entries of `reals`, before the vectors of the state; `first()` fixes them.
 enum Real : std::size_t { ledger_sums, residual, row_values, state_vectors };
 
+/// Name of the accounts of electric sources, in models that keep them.
+constexpr const char* supply = "supply";
+
 /// Name of the last vector, in models whose substructures have a memory.
 constexpr const char* memory = "memory";
 
@@ -61,6 +64,7 @@ CheckpointWriter::CheckpointWriter(const model::Model& model, std::size_t n_row)
   each_vector(none, model, [&](const char* name, const Eigen::VectorXd&, Eigen::Index length) {
     checkpoint_.reals.push_back({name, zeros(length)});
   });
+  if (model.books_supply) checkpoint_.reals.push_back({supply, std::vector<double>(model.terminals.size(), 0.0)});
   checkpoint_.integers = {{"step", {-1}}, {"solver", {0, 0}}};
   if (model.substructures.empty()) return;
   checkpoint_.integers.push_back({"factor", {0, 0, 0}});
@@ -84,6 +88,9 @@ const results::Checkpoint& CheckpointWriter::write(const variational::State& sta
   each_vector(state, model_, [&](const char*, const Eigen::VectorXd& vector, Eigen::Index) {
     copy(vector, checkpoint_.reals[at++].values);
   });
+  // Empty before the first node is evaluated.
+  if (model_.books_supply && !ledger.supply.empty())
+    std::ranges::copy(ledger.supply, checkpoint_.reals[at].values.begin());
   std::vector<double>& sums = checkpoint_.reals[Real::ledger_sums].values;
   sums[0] = ledger.dissipated;
   sums[1] = ledger.external;
@@ -149,6 +156,7 @@ void restore(const results::Checkpoint& checkpoint, variational::Ledger& ledger,
              std::span<double> row) {
   const std::vector<double>& sums = checkpoint.real("ledger");
   ledger = {.dissipated = sums[0], .external = sums[1], .source = sums[2], .initial_total = sums[3]};
+  if (has(checkpoint, supply)) ledger.supply = checkpoint.real(supply);
   last.residual = checkpoint.real("residual")[0];
   last.violation = checkpoint.real("residual")[1];
   last.iterations = static_cast<int>(checkpoint.integer("solver")[0]);

@@ -122,17 +122,8 @@ void NodeRows::write_common(const model::NodeView& view, std::span<const model::
 }
 
 void NodeRows::write(const variational::NodeRecord& node) {
-  const model::NodeView view{.serial = serial_++,
-                             .t = node.t,
-                             .x = node.state.x,
-                             .rate = node.values.rate,
-                             .q = node.state.q,
-                             .v = node.values.v,
-                             .constraint_force = node.constraint_force,
-                             .multipliers = node.multipliers,
-                             .y = node.state.y,
-                             .u = node.u,
-                             .y_after = &node.y_after};
+  model::NodeView view = variational::view_of(node);
+  view.serial = serial_++;
   write_common(view, node.values.parts);
   const double total = node.values.total.kinetic + node.values.total.potential();
   const variational::Ledger& ledger = node.ledger;

@@ -58,7 +58,7 @@ void straighten(const control::Problem& problem, std::vector<Eigen::VectorXd>& x
     Eigen::VectorXd from(manifold.n_v());
     manifold.difference(manifold.reference(), x.front(), from);
     for (const control::CoordinateTarget& target : problem.final.coordinates) {
-      way[target.rate] = target.value - from[target.rate];
+      if (!target.cut) way[target.rate] = target.value - from[target.rate];
     }
   }
   const Eigen::VectorXd first = x.front();

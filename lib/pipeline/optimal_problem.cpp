@@ -5,7 +5,7 @@
 
 #include "base/error.hpp"
 #include "build/place_bodies.hpp"
-#include "multibody/joint.hpp"
+#include "multibody/joint_coordinate.hpp"
 #include "scene/optimal_control.hpp"
 
 namespace muldi::pipeline {
@@ -65,42 +65,59 @@ class ProblemBuilder {
     return u;
   }
 
-  /// The first minimal velocity of a joint whose coordinates can be asked for, or -1 and an error.
+  /// A coordinate of a joint: of the tree its place in the minimal velocities, of a cut joint what computes it.
+  struct Coordinate {
+    int rate = -1;
+    control::CutJoint cut = {};
+  };
+
+  /// The first minimal velocity of a joint whose rates or momenta are given, or -1 and an error.
   template <class T>
   int first_rate(const scene::Entry<T>& entry) {
     const auto index = static_cast<std::size_t>(scene_.joints.index(entry.name));
     const multibody::TreeLink* link = built_.link_of_joint(index);
-    if (link == nullptr) {
-      errors_.push_back(scene::error_at(
-          entry.origin, "this joint closes a loop; give the coordinates of another joint of the loop, or a point"));
-      return -1;
-    }
-    return link->first_rate;
+    if (link != nullptr) return link->first_rate;
+    errors_.push_back(scene::error_at(
+        entry.origin, "this joint closes a loop; give the velocity or momentum of another joint of the loop"));
+    return -1;
   }
 
-  /// Calls use(k) for all coordinates of the joint that have a value.
+  /// Calls use(motion, k) for all coordinates of the joint that have a value.
   template <class T, class Use>
-  void for_each_coordinate(const scene::Entry<T>& entry, bool balls, Use use) {
-    const int first = first_rate(entry);
-    if (first < 0) return;
+  void for_each_given(const scene::Entry<T>& entry, Use use) {
     const auto index = static_cast<std::size_t>(scene_.joints.index(entry.name));
     std::size_t k = 0;
-    bool refused = false;
     for (const multibody::Motion& motion : built_.joint(index).pattern.motions) {
       for (int i = 0; i < motion.n_rates(); ++i, ++k) {
-        if (!entry.value.values[k]) continue;
-        if (motion.kind == multibody::Motion::Kind::ball && !balls) {
-          if (!refused) {
-            errors_.push_back(scene::error_at(entry.origin,
-                                              "a rotation vector is no coordinate of the optimisation; give points, "
-                                              "or the orientation of the body"));
-          }
-          refused = true;
-          continue;
-        }
-        use(first + static_cast<int>(k), *entry.value.values[k]);
+        if (entry.value.values[k]) use(motion, k);
       }
     }
+  }
+
+  /// Calls use(coordinate, value) for all coordinates of the joint that have a value.
+  template <class T, class Use>
+  void for_each_coordinate(const scene::Entry<T>& entry, Use use) {
+    const auto index = static_cast<std::size_t>(scene_.joints.index(entry.name));
+    const multibody::TreeLink* link = built_.link_of_joint(index);
+    bool refused = false;
+    for_each_given(entry, [&](const multibody::Motion& motion, std::size_t k) {
+      Coordinate at;
+      if (motion.kind == multibody::Motion::Kind::ball) {
+        if (!refused) {
+          errors_.push_back(scene::error_at(entry.origin,
+                                            "a rotation vector is no coordinate of the optimisation; give points, "
+                                            "or the orientation of the body"));
+        }
+        refused = true;
+        return;
+      }
+      if (link != nullptr) {
+        at.rate = link->first_rate + static_cast<int>(k);
+      } else {
+        at.cut = std::make_shared<multibody::JointCoordinate>(built_.joint(index), motion);
+      }
+      use(at, *entry.value.values[k]);
+    });
   }
 
   static std::string label_of(const scene::RecordedPoint& point) { return point.body.name + "." + point.point.name; }
@@ -125,8 +142,8 @@ class ProblemBuilder {
     control::EndCondition result;
     if (end.whole) result.x = start_;
     for (const auto& entry : end.pose.joints) {
-      for_each_coordinate(entry, false, [&](int rate, double value) {
-        result.coordinates.push_back({.name = "joints." + entry.name, .rate = rate, .value = value});
+      for_each_coordinate(entry, [&](const Coordinate& at, double value) {
+        result.coordinates.push_back({.name = "joints." + entry.name, .rate = at.rate, .cut = at.cut, .value = value});
       });
     }
     for (const auto& entry : end.pose.bodies) {
@@ -156,7 +173,11 @@ class ProblemBuilder {
     if (!end.velocity.empty()) {
       result = {.kind = Kind::rates, .values = Eigen::VectorXd::Zero(built_.manifold->n_v())};
       for (const auto& entry : end.velocity) {
-        for_each_coordinate(entry, true, [&](int rate, double value) { result.values[rate] = value; });
+        const int first = first_rate(entry);
+        if (first < 0) continue;
+        for_each_given(entry, [&](const multibody::Motion&, std::size_t k) {
+          result.values[first + static_cast<int>(k)] = *entry.value.values[k];
+        });
       }
     } else if (end.momentum && end.momentum->kind == scene::EndMomentum::Kind::rest) {
       result.kind = Kind::rest;
@@ -176,9 +197,10 @@ class ProblemBuilder {
   control::PathLimits limits() {
     control::PathLimits result{.true_field = said_.limits.true_field, .pull_in_margin = said_.limits.pull_in_margin};
     for (const auto& entry : said_.limits.joints) {
-      for_each_coordinate(entry, false, [&](int rate, const scene::Bounds& bounds) {
+      for_each_coordinate(entry, [&](const Coordinate& at, const scene::Bounds& bounds) {
         result.coordinates.push_back({.name = "joints." + entry.name,
-                                      .rate = rate,
+                                      .rate = at.rate,
+                                      .cut = at.cut,
                                       .lower = bounds[0].value_or(-control::infinity),
                                       .upper = bounds[1].value_or(control::infinity)});
       });
@@ -237,8 +259,8 @@ class ProblemBuilder {
   control::Tracking built_objective(const scene::TrackingObjective& said, const std::vector<control::ControlChoice>&) {
     control::Tracking result;
     for (const auto& entry : said.joints) {
-      for_each_coordinate(entry, false, [&](int rate, const base::TimeFunction& wanted) {
-        result.coordinates.push_back({.rate = rate, .wanted = wanted});
+      for_each_coordinate(entry, [&](const Coordinate& at, const base::TimeFunction& wanted) {
+        result.coordinates.push_back({.rate = at.rate, .cut = at.cut, .wanted = wanted});
       });
     }
     for (const auto& item : said.points.items) {
@@ -249,8 +271,8 @@ class ProblemBuilder {
   control::Terminal built_objective(const scene::TerminalObjective& said, const std::vector<control::ControlChoice>&) {
     control::Terminal result;
     for (const auto& entry : said.joints) {
-      for_each_coordinate(entry, false, [&](int rate, double wanted) {
-        result.coordinates.push_back({.rate = rate, .wanted = wanted});
+      for_each_coordinate(entry, [&](const Coordinate& at, double wanted) {
+        result.coordinates.push_back({.rate = at.rate, .cut = at.cut, .wanted = wanted});
       });
     }
     for (const auto& item : said.points.items) {

@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "build/place_bodies.hpp"
 #include "multibody/joint.hpp"
+#include "pipeline/step_options.hpp"
 #include "pipeline/trajectory_rows.hpp"
 #include "scene/read_scene.hpp"
 
@@ -126,9 +127,7 @@ Outcome ReplayRun::run(const control::Trajectory& optimum, const Eigen::VectorXd
   variational::LoopOptions options;
   options.dt = step_;
   options.steps = (n_nodes - 1) * fine_ + n_beyond_;
-  options.step.tolerance = scene_.solver.tolerance;
-  options.step.max_iterations = scene_.solver.max_iterations;
-  options.step.linear = built_.linear;
+  options.step = step_options(scene_, built_);
   variational::LoopCallbacks callbacks;
   callbacks.record = [&](const variational::NodeRecord& node) {
     if (node.step % scene_.record.every == 0 || node.last) rows_->write(node);
@@ -140,6 +139,10 @@ Outcome ReplayRun::run(const control::Trajectory& optimum, const Eigen::VectorXd
   variational::StepReport last;
   variational::TimeLoop loop(*built_.model, options);
   const variational::LoopResult result = loop.run(state, ledger, last, callbacks);
+  if (result.status != variational::Status::completed) {
+    deviations_.stopped_at = result.t;
+    deviations_.in_horizon = result.t < (1.0 - 1e-9) * optimum.step * static_cast<double>(n_nodes - 1);
+  }
   store();
   return {.status = result.status,
           .sentence = result.sentence.empty() ? "" : "replay: " + result.sentence,

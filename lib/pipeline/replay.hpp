@@ -26,7 +26,9 @@ struct Deviation {
 
 struct Deviations {
   std::vector<Deviation> all = {};
-  bool beyond = false;  ///< the replay goes on after the horizon
+  bool beyond = false;                    ///< the replay goes on after the horizon
+  std::optional<double> stopped_at = {};  ///< time at which the replay stopped before its end
+  bool in_horizon = false;                ///< it stopped before the end of the horizon
 };
 
 /// Builds the model of a replay and drops it; InputError if its muscles do not fit.

@@ -8,6 +8,7 @@
 #include "pipeline/node_rows.hpp"
 #include "pipeline/provenance.hpp"
 #include "pipeline/run_statics.hpp"
+#include "pipeline/step_options.hpp"
 #include "scene/read_scene.hpp"
 #include "variational/time_loop.hpp"
 
@@ -22,13 +23,10 @@ variational::LoopOptions loop_options(const scene::Scene& scene, const build::Bu
   options.dt = scene.dynamics->step;
   options.steps = scene.dynamics->n_steps();
   options.record_every = scene.record.every;
-  options.step.tolerance = scene.solver.tolerance;
-  options.step.max_iterations = scene.solver.max_iterations;
-  options.step.linear = built.linear;
+  options.step = step_options(scene, built);
   if (scene.dynamics->integrator == scene::Integrator::explicit_scheme) {
     options.integrator = variational::Integrator::explicit_scheme;
   }
-  options.step.substructures = built.solid_linear;
   return options;
 }
 
@@ -78,7 +76,7 @@ class DynamicsRun {
     };
     const variational::LoopResult result = loop_->run(state_, ledger_, last_, callbacks);
     if (result.status == variational::Status::no_convergence) return failure(result);
-    return {.status = result.status, .sentence = with_name(result.sentence), .time = result.t};
+    return {.status = result.status, .sentence = result.sentence, .time = result.t};
   }
 
  private:
@@ -97,11 +95,12 @@ class DynamicsRun {
 
   /// Newton's iteration ends nowhere where the motion is too fast for the step: that can be said.
   Outcome failure(const variational::LoopResult& result) const {
-    const double turn = expected_turn();
+    const model::Turn part = built_.manifold->largest_turn(state_.q, ahead());
+    const double turn = part.angle / small_part;
     if (turn <= longest_turn) return {.status = result.status, .sentence = result.sentence, .time = result.t};
     return {.status = variational::Status::step_too_large,
-            .sentence = with_name(base::format(
-                "a body turns by {:.3g} rad in one step (limit {:g}): use a smaller step", turn, longest_turn)),
+            .sentence = base::format("{} turns by {:.3g} rad in one step (limit {:g}): use a smaller step",
+                                     built_.model->body_at(part.node), turn, longest_turn),
             .time = result.t};
   }
 
@@ -116,32 +115,12 @@ class DynamicsRun {
     return q;
   }
 
-  /// Largest turn of a body (rad) in the next step at the present speed.
-  double expected_turn() const { return built_.manifold->largest_rotation(state_.q, ahead()) / small_part; }
-
-  /// The sentence about `a body` with the name of the one that turns fastest.
-  std::string with_name(const std::string& sentence) const {
-    constexpr std::string_view any = "a body";
-    if (!sentence.starts_with(any) || scene_.bodies.size() == 0) return sentence;
-    const Eigen::VectorXd q = ahead();
-    double largest = -1.0;
-    std::size_t fastest = 0;
-    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
-      const auto at = static_cast<Eigen::Index>(12 * i + 3);
-      const double change = (q.segment<9>(at) - state_.q.segment<9>(at)).norm();
-      if (change <= largest) continue;
-      largest = change;
-      fastest = i;
-    }
-    return base::format("body '{}'", scene_.bodies[fastest].name) + sentence.substr(any.size());
-  }
-
   std::string warning_of(const variational::StepReport& report, double t) const {
     const std::string at = base::format("at t = {:.6g} {}: ", t, scene_.units.time());
     if (report.rotation > options_.step.warn_rotation) {
-      return at + with_name(base::format(
-                      "a body turns by {:.3g} rad in one step; results lose accuracy: take a smaller dynamics.step",
-                      report.rotation));
+      return at +
+             base::format("{} turns by {:.3g} rad in one step; results lose accuracy: take a smaller dynamics.step",
+                          built_.model->body_at(report.turning), report.rotation);
     }
     return at + base::format(
                     "the loops come near a change point (regularity {:.3g} of that at the start), where the mechanism "

@@ -35,34 +35,30 @@ EquilibriumRows::EquilibriumRows(results::Recorder& recorder, const scene::Scene
       last_load_(scene.statics->control ? *scene.statics->to : 1.0),
       rows_(recorder, scene, built, NodeRows::Kind::statics, static_cast<std::size_t>(scene.statics->steps) + 1),
       parts_(built.model->parts().size()),
+      supply_(*built.model),
       zero_q_(Eigen::VectorXd::Zero(built.model->n_q())),
       zero_v_(Eigen::VectorXd::Zero(built.manifold->n_v())),
       constraint_force_(zero_q_) {}
 
 void EquilibriumRows::write(const statics::SweepPoint& point) {
-  const std::span<const double> x(point.state.x.data(), static_cast<std::size_t>(point.state.x.size()));
-  built_.model->energies({.x = x, .q = point.q, .v = zero_q_, .u = point.u}, parts_);
+  last_.load = point.load;
+  last_.x = point.state.x;
+  last_.q = point.q;
+  last_.multipliers = point.state.multipliers;
+  last_.y = point.y;
+  last_.u.assign(point.u.begin(), point.u.end());
+  const std::span<const double> x(last_.x.data(), static_cast<std::size_t>(last_.x.size()));
+  built_.model->energies({.x = x, .q = last_.q, .v = zero_q_, .u = last_.u}, parts_);
   constraint_force_ = -point.force;
   for (const auto& part : built_.model->substructures) part->gather(constraint_force_);
-  const model::NodeView view{.t = point.load,
-                             .x = point.state.x,
-                             .rate = zero_v_,
-                             .q = point.q,
-                             .v = zero_q_,
-                             .constraint_force = constraint_force_,
-                             .multipliers = point.state.multipliers,
-                             .y = point.y,
-                             .u = point.u};
-  least_stretched_.clear();
-  model::NodeView look = view;
-  look.serial = looks_--;  // below those of the records
-  for (const model::Observable& observable : built_.model->observables) {
-    if (!observable.path.starts_with("muscles/") || !observable.path.ends_with("/stretch")) continue;
-    double stretch = 0.0;
-    observable.evaluate(look, {&stretch, 1});
-    if (!least_stretched_.empty() && stretch >= least_stretch_) continue;
-    least_stretch_ = stretch;
-    least_stretched_ = observable.path.substr(8, observable.path.size() - 16);
+  if (supply_.is_kept()) {
+    model::NodeView look = last_view();
+    look.serial = looks_--;  // below those of the records
+    if (accounts_.empty()) {
+      supply_.open(look, accounts_);
+    } else {
+      supply_.change(look, accounts_);
+    }
   }
   rows_.write({.load = point.load,
                .stable = point.report.stability == statics::Stability::stable,
@@ -71,7 +67,35 @@ void EquilibriumRows::write(const statics::SweepPoint& point) {
                .violation = built_.manifold->violation(point.q),
                .parts = parts_,
                .last = point.load == last_load_},
-              view);
+              last_view());
+}
+
+model::NodeView EquilibriumRows::last_view() const {
+  return {.t = last_.load,
+          .x = last_.x,
+          .rate = zero_v_,
+          .q = last_.q,
+          .v = zero_q_,
+          .constraint_force = constraint_force_,
+          .multipliers = last_.multipliers,
+          .y = last_.y,
+          .u = last_.u,
+          .accounts = accounts_};
+}
+
+EquilibriumRows::Stretched EquilibriumRows::least_stretched() {
+  Stretched least;
+  model::NodeView view = last_view();
+  view.serial = looks_--;
+  for (const model::Observable& observable : built_.model->observables) {
+    if (!observable.path.starts_with("muscles/") || !observable.path.ends_with("/stretch")) continue;
+    double stretch = 0.0;
+    observable.evaluate(view, {&stretch, 1});
+    if (!least.muscle.empty() && stretch >= least.stretch) continue;
+    constexpr std::size_t around = 16;  // of the name: the folder and the quantity
+    least = {.muscle = observable.path.substr(8, observable.path.size() - around), .stretch = stretch};
+  }
+  return least;
 }
 
 StaticsRun::StaticsRun(const scene::Scene& scene, const build::BuiltModel& built, results::Recorder& recorder)
@@ -115,7 +139,7 @@ void StaticsRun::report_changes(const std::vector<statics::BranchChange>& change
   }
 }
 
-std::string StaticsRun::loss_sentence(const statics::SweepResult& result) const {
+std::string StaticsRun::loss_sentence(const statics::SweepResult& result) {
   std::string text = result.sentence;
   if (scene_.statics->control) {
     const auto index = static_cast<std::size_t>(scene_.controls.index(scene_.statics->control->name));
@@ -123,8 +147,9 @@ std::string StaticsRun::loss_sentence(const statics::SweepResult& result) const 
                         scene_.statics->control->name, result.last_good, result.first_bad,
                         scene_.units.unit_name(built_.model->controls[index].unit));
   }
-  if (!rows_.least_stretched().empty()) {
-    text += base::format("; there muscle '{}' is at stretch {:.4g}", rows_.least_stretched(), rows_.least_stretch());
+  const EquilibriumRows::Stretched least = rows_.least_stretched();
+  if (!least.muscle.empty()) {
+    text += base::format("; there muscle '{}' is at stretch {:.4g}", least.muscle, least.stretch);
   }
   return text;
 }

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "build/built_model.hpp"
+#include "model/supply.hpp"
 #include "pipeline/node_rows.hpp"
 #include "pipeline/outcome.hpp"
 #include "pipeline/run_context.hpp"
@@ -24,18 +25,29 @@ class EquilibriumRows {
   EquilibriumRows(results::Recorder& recorder, const scene::Scene& scene, const build::BuiltModel& built);
   void write(const statics::SweepPoint& point);
 
-  /// The muscle that is shortest for its rest length at the last row, empty without muscles, and its stretch.
-  const std::string& least_stretched() const { return least_stretched_; }
-  double least_stretch() const { return least_stretch_; }
+  /// A muscle and its stretch.
+  struct Stretched {
+    std::string muscle;
+    double stretch = 0.0;
+  };
+  /// The muscle that is shortest for its rest length at the last row; empty without muscles.
+  Stretched least_stretched();
 
  private:
+  model::NodeView last_view() const;
+
   const build::BuiltModel& built_;
   double last_load_;
   NodeRows rows_;
   std::vector<model::Energy> parts_;
   long looks_ = -2;
-  double least_stretch_ = 0.0;
-  std::string least_stretched_;
+  model::SupplyBook supply_;
+  std::vector<double> accounts_;
+  struct {
+    double load = 0.0;
+    Eigen::VectorXd x, q, multipliers, y;
+    std::vector<double> u;
+  } last_;  // row
   Eigen::VectorXd zero_q_;
   Eigen::VectorXd zero_v_;
   Eigen::VectorXd constraint_force_;
@@ -52,7 +64,7 @@ class StaticsRun {
 
  private:
   /// Where the equilibrium was lost, as the user speaks of it.
-  std::string loss_sentence(const statics::SweepResult& result) const;
+  std::string loss_sentence(const statics::SweepResult& result);
   /// Limit points and branches that the arc length has passed: attributes and messages.
   void report_changes(const std::vector<statics::BranchChange>& changes, const RunContext& context);
   void report_critical(const std::vector<statics::CriticalPoint>& points, const RunContext& context);

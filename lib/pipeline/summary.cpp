@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/text.hpp"
+#include "pipeline/required_size.hpp"
 
 namespace muldi::pipeline {
 namespace {
@@ -141,31 +142,6 @@ std::string muscles_text(const build::Assembled& assembled) {
   if (assembled.meshed_muscles == 0) return base::format("{} (lumped)", lumped);
   if (lumped == 0) return base::format("{} (fe)", assembled.meshed_muscles);
   return base::format("{} ({} lumped, {} fe)", assembled.muscles, lumped, assembled.meshed_muscles);
-}
-
-/// Doubles of the results, of the tangent and of the states.
-double memory_bytes(const scene::Scene& scene, const build::BuiltModel& built) {
-  const double tangent = static_cast<double>(built.model->pattern->n_values());
-  const double states = 40.0 * static_cast<double>(built.model->n_q() + built.model->n_y() + built.manifold->n_v());
-  double dense = 0.0;
-  if (scene.statics) dense = 4.0 * built.manifold->n_v() * built.manifold->n_v();
-  return 8.0 * (2.0 * tangent + states + dense);
-}
-
-double result_bytes(const scene::Scene& scene, const build::BuiltModel& built) {
-  double row = 32.0;
-  for (const model::Observable& observable : built.model->observables) row += static_cast<double>(observable.size());
-  row += 4.0 * static_cast<double>(built.model->parts().size());
-  double rows = 0.0;
-  if (scene.statics) rows += scene.statics->steps + 1.0;
-  if (scene.dynamics) rows += static_cast<double>(scene.dynamics->n_steps()) / scene.record.every + 1.0;
-  double fields = 0.0;
-  for (const model::FieldHistory& history : built.model->histories) {
-    double one = 0.0;
-    for (const auto& field : history.fields) one += static_cast<double>(field.observable.size());
-    fields += one * (rows / history.every + 1.0);
-  }
-  return 8.0 * (row * rows + fields);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ TrajectoryRows::TrajectoryRows(const build::BuiltModel& built, const control::Tr
       trajectory_(trajectory),
       n_steps_(static_cast<long>(trajectory.u.size())),
       nodes_(model_, built.linear),
+      supply_(model_),
       frame_(manifold_.make_frame()) {
   for (Eigen::VectorXd* in_q :
        {&q1_, &q_mid_, &v_, &constraint_force_, &forces_.force, &forces_.momentum, &state_.q, &state_.p}) {
@@ -99,6 +100,24 @@ void TrajectoryRows::record(NodeRows& rows, long n) {
               .last = n == n_steps_});
 }
 
+void TrajectoryRows::book_supply(long n) {
+  const auto view = [&](long interval) {
+    return model::NodeView{.serial = -2 - 2 * n - (interval - n),
+                           .t = state_.t,
+                           .x = state_.x,
+                           .rate = values_.rate,
+                           .q = state_.q,
+                           .v = values_.v,
+                           .constraint_force = constraint_force_,
+                           .multipliers = multipliers_,
+                           .y = stage_,
+                           .u = controls(interval)};
+  };
+  if (n == 0) return supply_.open(view(0), ledger_.supply);
+  supply_.stand(view(n - 1));
+  supply_.change(view(n), ledger_.supply);
+}
+
 void TrajectoryRows::find_largest_impulse() {
   const Eigen::VectorXd first = state_.q;
   for (long n = 0; n < n_steps_; ++n) {
@@ -133,6 +152,7 @@ const Eigen::VectorXd& TrajectoryRows::initial_rates() {
 void TrajectoryRows::write(NodeRows& rows) {
   find_largest_impulse();
   begin();
+  if (supply_.is_kept()) book_supply(0);
   for (long n = 0; n < n_steps_; ++n) {
     double jump = 0.0;
     if (n > 0) {
@@ -143,6 +163,7 @@ void TrajectoryRows::write(NodeRows& rows) {
     balance(n);
     record(rows, n);
     ledger_.source += jump;
+    if (supply_.is_kept() && n > 0) book_supply(n);
     advance(n);
   }
   nodes_.evaluate(state_, controls(n_steps_), controls(n_steps_), values_);

@@ -30,6 +30,8 @@ class TrajectoryRows {
   /// Of all intervals: what the residual is relative to, for at rest all terms of a node may be small.
   void find_largest_impulse();
   void record(NodeRows& rows, long n);
+  /// Opens the accounts of the electric sources at the first node, and books the change of the controls at node n.
+  void book_supply(long n);
 
   const model::Model& model_;
   const model::Manifold& manifold_;
@@ -39,6 +41,7 @@ class TrajectoryRows {
   variational::NodeValues values_;
   variational::State state_;
   variational::Ledger ledger_;
+  model::SupplyBook supply_;
   variational::StepReport report_;
   std::unique_ptr<model::Frame> frame_;
   model::IntervalForces forces_;

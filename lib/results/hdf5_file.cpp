@@ -1,15 +1,16 @@
 #include "results/hdf5_file.hpp"
 
-#include <fcntl.h>
 #include <hdf5.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/special_file.hpp"
+#include "results/hdf5_attribute.hpp"
 #include "results/live_file.hpp"
+#include "results/unmarked_driver.hpp"
 
 namespace muldi::results::hdf5 {
 namespace {
@@ -18,7 +19,10 @@ constexpr std::size_t compress_from_bytes = std::size_t{64} << 10;
 constexpr std::size_t fixed_chunk_bytes = std::size_t{1} << 20;
 constexpr unsigned deflate_level = 1;        // after the shuffle filter higher levels gain little and cost much
 constexpr unsigned most_compact_links = 64;  // groups of fewer links are made and searched faster without an index
-constexpr std::size_t memory_growth = 4096;
+constexpr unsigned most_compact_attributes = 60000;
+// Makes the header of the root group as large as the first page, which reaches the disk in one piece: what `close` puts
+// down there appears all at once.
+constexpr unsigned links_in_first_page = 71, link_name_bytes = 40;
 constexpr std::size_t max_rank = 8;
 constexpr unsigned swmr_attempts = 20;  // one millisecond in all
 
@@ -52,20 +56,17 @@ const char* name_of(const std::string& object) { return object.empty() ? "/" : o
 hid_t file_type(ValueType type) { return type == ValueType::float64 ? H5T_IEEE_F64LE : H5T_STD_I64LE; }
 hid_t memory_type(ValueType type) { return type == ValueType::float64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64; }
 
-/// The type of every text attribute, made once.
-hid_t text_type() {
-  static const hid_t type = H5Tcopy(H5T_C_S1);
-  static const bool ready = H5Tset_size(type, H5T_VARIABLE) >= 0 && H5Tset_cset(type, H5T_CSET_UTF8) >= 0;
-  return ready ? type : H5I_INVALID_HID;
-}
-
 /// Latest format (SWMR needs it), values written in place without a detour, no locks of the library: LiveFile has them.
-Id access_properties() {
+Id access_properties(Access access) {
   prepare_thread();
   Id properties(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_libver_bounds(properties.get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
   H5Pset_sieve_buf_size(properties.get(), 0);
   H5Pset_file_locking(properties.get(), false, true);
+  if (access == Access::read) set_reading_driver(properties.get());
+  if (access == Access::append) set_driver(properties.get(), {Writing::Order::at_once});
+  if (access == Access::write) set_driver(properties.get(), {Writing::Order::highest_first});
+  if (access == Access::shorten) set_driver(properties.get(), {Writing::Order::lowest_first});
   return properties;
 }
 
@@ -73,6 +74,14 @@ Id access_properties() {
 Id link_properties() {
   Id properties(H5Pcreate(H5P_LINK_CREATE));
   H5Pset_create_intermediate_group(properties.get(), 1);
+  return properties;
+}
+
+/// Properties of groups (of the file: its root group) of a few links and attributes, kept in the header of the group:
+/// found faster than in an index, and changed in one piece.
+Id compact(Id properties) {
+  H5Pset_link_phase_change(properties.get(), most_compact_links, most_compact_links - 1);
+  H5Pset_attr_phase_change(properties.get(), most_compact_attributes, most_compact_attributes - 1);
   return properties;
 }
 
@@ -93,43 +102,6 @@ Id space_of(const Shape& shape, const hsize_t* maximum = nullptr) {
 void compress(const Id& properties) {
   H5Pset_shuffle(properties.get());
   H5Pset_deflate(properties.get(), deflate_level);
-}
-
-std::optional<AttributeValue> read_attribute(const Id& attribute) {
-  const Id type(H5Aget_type(attribute.get()));
-  const Id space(H5Aget_space(attribute.get()));
-  const auto size = H5Sget_simple_extent_npoints(space.get());
-  if (!type.valid() || size != 1) return {};
-  const H5T_class_t kind = H5Tget_class(type.get());
-  if (kind == H5T_STRING) {
-    if (H5Tis_variable_str(type.get()) > 0) {
-      char* text = nullptr;
-      if (H5Aread(attribute.get(), type.get(), &text) < 0) return {};
-      std::string result = text == nullptr ? "" : text;
-      H5free_memory(text);
-      return result;
-    }
-    std::string text(H5Tget_size(type.get()), '\0');
-    if (H5Aread(attribute.get(), type.get(), text.data()) < 0) return {};
-    return text.substr(0, text.find('\0'));
-  }
-  std::int64_t integer = 0;
-  if (kind == H5T_INTEGER && H5Aread(attribute.get(), H5T_NATIVE_INT64, &integer) >= 0) return integer;
-  double real = 0.0;
-  if (kind == H5T_FLOAT && H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &real) >= 0) return real;
-  return {};
-}
-
-bool write_attribute(const Id& owner, const std::string& name, const AttributeValue& value) {
-  const auto write = [&](hid_t type_on_disk, hid_t type, const void* values) {
-    const Id space = space_of({});
-    const Id id(H5Acreate2(owner.get(), name.c_str(), type_on_disk, space.get(), H5P_DEFAULT, H5P_DEFAULT));
-    return id.valid() && H5Awrite(id.get(), type, values) >= 0;
-  };
-  if (const auto* real = std::get_if<double>(&value)) return write(H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, real);
-  if (const auto* integer = std::get_if<std::int64_t>(&value)) return write(H5T_STD_I64LE, H5T_NATIVE_INT64, integer);
-  const char* text = std::get<std::string>(value).c_str();
-  return write(text_type(), text_type(), &text);
 }
 
 /// File and memory selections of some rows; a scalar is its own row.
@@ -233,36 +205,39 @@ std::int64_t File::check(std::int64_t result, const std::string& object) const {
 }
 
 File::File(Origin origin)
-    : origin_(std::move(origin)), links_(link_properties()), rows_access_(H5Pcreate(H5P_DATASET_ACCESS)) {
+    : origin_(std::move(origin)),
+      links_(link_properties()),
+      rows_access_(H5Pcreate(H5P_DATASET_ACCESS)),
+      groups_creation_(compact(Id(H5Pcreate(H5P_GROUP_CREATE)))) {
   H5Pset_chunk_cache(rows_access_.get(), 1, 0, 1.0);
 }
 
 File File::create(const std::string& path) {
-  const Id access = access_properties();
-  H5Pset_fapl_core(access.get(), memory_growth, true);
+  const Id access = access_properties(Access::write);
   File file({path, Access::write});
   file.in_memory_ = true;
-  file.groups_creation_ = Id(H5Pcreate(H5P_GROUP_CREATE));
-  H5Pset_link_phase_change(file.groups_creation_.get(), most_compact_links, most_compact_links - 1);
-  file.id_ = Id(file.check(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), ""));
+  const Id creation = compact(Id(H5Pcreate(H5P_FILE_CREATE)));
+  H5Pset_est_link_info(creation.get(), links_in_first_page, link_name_bytes);
+  file.id_ = Id(file.check(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), ""));
   return file;
 }
 
 File File::open(const std::string& path, Access access) {
-  const Id properties = access_properties();
+  const Id properties = access_properties(access);
   File file({path, access});
   const unsigned write = H5F_ACC_RDWR | (access == Access::append ? H5F_ACC_SWMR_WRITE : 0U);
   if (access != Access::read) {
     file.id_ = Id(file.check(H5Fopen(path.c_str(), write, properties.get()), ""));
     return file;
   }
+  if (base::is_special_file(path)) throw base::InputError("cannot read '" + path + "': not a regular file");
+  check_begun(path);
   if (H5Fis_hdf5(path.c_str()) == 0) throw base::InputError("cannot read '" + path + "': not an HDF5 file");
   check_whole(path);
   // The library doubles its wait between two attempts: its default of 100 would never end on a damaged file.
   H5Pset_metadata_read_attempts(properties.get(), swmr_attempts);
   const unsigned swmr = H5F_ACC_RDONLY | H5F_ACC_SWMR_READ;
-  // Plain readers are kept out of a file, or of its last rows, whose writer was killed at a bad moment; SWMR readers of
-  // an older format.
+  // Plain readers are kept out where the writer was killed at a bad moment; SWMR readers of an older format.
   file.id_ = Id(H5Fopen(path.c_str(), swmr, properties.get()));
   if (!file.id_.valid()) file.id_ = Id(file.check(H5Fopen(path.c_str(), H5F_ACC_RDONLY, properties.get()), ""));
   return file;
@@ -359,7 +334,8 @@ bool File::contains(const std::string& path) const {
 void File::set_attribute(const Attribute& attribute) {
   const auto& [object, name, value] = attribute;
   if (!object.empty() && !contains(object)) {
-    const Id group(check(H5Gcreate2(id_.get(), object.c_str(), links_.get(), H5P_DEFAULT, H5P_DEFAULT), object));
+    const Id group(
+        check(H5Gcreate2(id_.get(), object.c_str(), links_.get(), groups_creation_.get(), H5P_DEFAULT), object));
   }
   const Id owner(check(H5Oopen(id_.get(), name_of(object), H5P_DEFAULT), object));
   if (H5Aexists(owner.get(), name.c_str()) > 0) check(H5Adelete(owner.get(), name.c_str()), object);
@@ -390,10 +366,7 @@ void File::close() {
 
 void File::abandon() {
   void* handle = nullptr;
-  if (in_memory_ || !id_.valid() || H5Fget_vfd_handle(id_.get(), H5P_DEFAULT, &handle) < 0) return;
-  const int sink = ::open("/dev/null", O_RDWR | O_CLOEXEC);
-  ::dup2(sink, *static_cast<int*>(handle));
-  ::close(sink);
+  if (id_.valid() && H5Fget_vfd_handle(id_.get(), H5P_DEFAULT, &handle) >= 0) hdf5::abandon(handle);
 }
 
 }  // namespace muldi::results::hdf5

@@ -42,7 +42,9 @@ class Id {
 };
 
 /// How a file is open. `append`: rows are added while other processes read; nothing can be created or removed.
-enum class Access { read, write, append };
+/// `write` and `shorten` (taking rows away): everything reaches the disk in `close`, in an order in which a reader
+/// never meets what is half done.
+enum class Access { read, write, shorten, append };
 
 /// What error messages name.
 struct Origin {
@@ -152,13 +154,13 @@ class File {
 
   Id id_;
   Origin origin_;
-  Id links_;        ///< properties that make missing groups on the way
-  Id rows_access_;  ///< properties that do without a chunk cache
+  Id links_;            ///< properties that make missing groups on the way
+  Id rows_access_;      ///< properties that do without a chunk cache
+  Id groups_creation_;  ///< properties of new groups
   /// The group that a new object belongs to, made if it is missing, and the object's own name there.
   std::pair<std::int64_t, const char*> place_of(const std::string& path);
 
   std::map<std::string, Id> groups_;  ///< open groups of a file in memory
-  Id groups_creation_;
   bool in_memory_ = false;
 };
 

@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::size_t compressed_row_bytes = 4096;  // a field; rows of numbers are written faster than compressed
 constexpr std::size_t max_chunk_bytes = std::size_t{256} << 10;
-constexpr std::uint64_t room_for_index = std::uint64_t{1} << 20;
 
 hdf5::RowStorage storage_of(std::size_t width, std::size_t block_rows) {
   const std::size_t row_bytes = width * sizeof(double);
@@ -95,10 +94,8 @@ void Hdf5Recorder::open_to_resume() {
     resume_rows_ = std::move(stored.rows);
   }
   live_ = LiveFile(output_.path);
-  live_.open_to_readers(0);
   file_ = hdf5::File::open(output_.path, hdf5::Access::write);
   file_.own_all_bytes();
-  live_.open_to_readers(0);
 }
 
 std::size_t Hdf5Recorder::block_rows(const SeriesSpec& series, std::size_t proposed) const {
@@ -108,8 +105,6 @@ std::size_t Hdf5Recorder::block_rows(const SeriesSpec& series, std::size_t propo
 }
 
 void Hdf5Recorder::do_start() {
-  room_ = room_for_index;
-  for (const Block& block : blocks()) room_ += 2 * sizeof(double) * block.values.size();
   if (output_.mode == Output::Mode::resume) {
     resume();
   } else {
@@ -124,7 +119,7 @@ void Hdf5Recorder::create() {
     try {
       file_ = hdf5::File::create(output_.path);
       create_content();
-      show();
+      reopen(hdf5::Access::append);
     } catch (...) {
       drop();
       std::error_code ignored;
@@ -140,11 +135,12 @@ void Hdf5Recorder::wait_until_created() {
   created_.get();
 }
 
-/// Writes what was created and opens the file anew, for rows: data sets are opened when their first rows come.
-void Hdf5Recorder::show() {
+/// Writes what was changed and opens the file anew; data sets are opened when they are asked for.
+void Hdf5Recorder::reopen(hdf5::Access access) {
+  data_sets_ = std::vector<hdf5::DataSet>(columns().size());
+  checkpoints_.reset();
   file_.close();
-  file_ = hdf5::File::open(output_.path, hdf5::Access::append);
-  live_.open_to_readers(room_);
+  file_ = hdf5::File::open(output_.path, access);
 }
 
 hdf5::RowStorage Hdf5Recorder::storage(const Column& column) const {
@@ -163,7 +159,6 @@ void Hdf5Recorder::create_content() {
     describe(set, channel.spec.unit, channel.spec.doc);
     if (channel.axis) set.add_attribute("axis", std::int64_t{1});
   }
-  data_sets_ = std::vector<hdf5::DataSet>(columns().size());
   for (const Attribute& attribute : layout().attributes) file_.set_attribute(attribute);
   std::vector<std::string> axes;
   for (const SeriesSpec& series : layout().series) axes.push_back(series.axis);
@@ -172,14 +167,13 @@ void Hdf5Recorder::create_content() {
 
 void Hdf5Recorder::resume() {
   check_layout();
+  check_rows();
   open_checkpoints();
-  data_sets_ = std::vector<hdf5::DataSet>(columns().size());
   try {
-    cut();
     set_status(file_, running);
-    data_sets_ = std::vector<hdf5::DataSet>(columns().size());
-    checkpoints_.reset();
-    show();
+    reopen(hdf5::Access::shorten);
+    cut();
+    reopen(hdf5::Access::append);
   } catch (const base::EnvironmentError& error) {
     rescue(error.what());
     throw;
@@ -213,14 +207,18 @@ void Hdf5Recorder::check_layout() const {
   if (!differences.empty()) throw base::InputError(std::move(differences));
 }
 
+void Hdf5Recorder::check_rows() const {
+  for (const Column& column : columns()) {
+    const std::string& path = layout().channels[column.channel].spec.path;
+    if (file_.data_set(path).shape()[0] < static_cast<std::size_t>(resume_rows_[column.block])) {
+      throw base::InputError("'" + output_.path + "' cannot be resumed: /" + path + " is too short");
+    }
+  }
+}
+
 void Hdf5Recorder::cut() {
   for (const Column& column : columns()) {
-    hdf5::DataSet& set = data_set_of(column);
-    const auto rows = static_cast<std::size_t>(resume_rows_[column.block]);
-    if (set.shape()[0] < rows) {
-      throw base::InputError("'" + output_.path + "' cannot be resumed: /" + set.path() + " is too short");
-    }
-    set.resize(rows);
+    data_set_of(column).resize(static_cast<std::size_t>(resume_rows_[column.block]));
   }
   for (std::size_t s = 0; s < blocks().size(); ++s) go_on_at(s, static_cast<std::size_t>(resume_rows_[s]));
   for (const Column& column : columns()) {
@@ -260,17 +258,16 @@ void Hdf5Recorder::write_rows(const Column& column) {
 }
 
 void Hdf5Recorder::do_flush(const Checkpoint* checkpoint, std::span<const std::int64_t> checkpoint_rows) {
-  const auto write_and_show = [&](bool axes) {
+  const auto write = [&](bool axes) {
     for (const Column& column : columns()) {
       if (layout().channels[column.channel].axis == axes) write_rows(column);
     }
     file_.flush();
-    live_.open_to_readers(room_);
   };
   wait_until_created();
   try {
-    write_and_show(false);
-    write_and_show(true);
+    write(false);
+    write(true);
     if (checkpoint == nullptr) return;
     if (!checkpoints_) open_checkpoints();
     checkpoints_->write(*checkpoint, checkpoint_rows);
@@ -295,7 +292,6 @@ void Hdf5Recorder::do_close(const Ending& ending, const Late& late) {
 
 void Hdf5Recorder::end(const Ending& ending, const Late& late) {
   file_ = hdf5::File::open(output_.path, hdf5::Access::write);
-  live_.open_to_readers(0);
   set_status(file_, ending);
   for (const FixedArray& array : late.fixed) {
     file_.remove(array.spec.path);
@@ -323,16 +319,14 @@ void Hdf5Recorder::drop() {
 void Hdf5Recorder::rescue(const std::string& sentence) {
   drop();
   try {
-    live_.open_to_readers(0);
-    hdf5::File file = hdf5::File::open(output_.path, hdf5::Access::write);
-    live_.open_to_readers(0);
-    file_ = std::move(file);
+    file_ = hdf5::File::open(output_.path, hdf5::Access::shorten);
     std::vector<std::size_t> rows;
     for (const SeriesSpec& series : layout().series) rows.push_back(file_.data_set(series.axis).shape()[0]);
     for (const DeclaredChannel& channel : layout().channels) {
       hdf5::DataSet set = file_.data_set(channel.spec.path);
       if (set.shape()[0] > rows[channel.series]) set.resize(rows[channel.series]);
     }
+    reopen(hdf5::Access::write);
     set_status(file_, {.status = "write_error", .where = sentence, .time = running.time});
     file_.close();
   } catch (const base::EnvironmentError&) {

@@ -4,9 +4,8 @@
 /// While the run goes on the file is in SWMR mode: other programs open it with swmr=True (h5py) and see new rows after
 /// `dataset.id.refresh()`; a plain open works too and shows the state of that moment. `status` is `running` from the
 /// first byte; the true status is put down by `close()`, when the file has left SWMR mode. After a killed process the
-/// file opens as it is and still says `running`: nothing need be done to read it, `--resume` goes on from its
-/// checkpoint. Only if the kill hit the microseconds between the library's write of its mark and our removal
-/// of it (live_file.hpp) must a reader say swmr=True; `muldi-sim info` and `--resume` manage anyway.
+/// file opens as it is, whatever the moment (unmarked_driver.hpp), and still says `running`: nothing need be done to
+/// read it, `--resume` goes on from its checkpoint.
 ///
 /// The axis of a series is written last: rows up to its length are complete whatever happens. After a write error the
 /// file holds all rows of the last flush that succeeded, and the status `write_error` where that can still be written.
@@ -52,9 +51,10 @@ class Hdf5Recorder final : public Recorder {
   /// Throws what went wrong while the file was made.
   void wait_until_created();
   void create_content();
-  void show();
+  void reopen(hdf5::Access access);
   void resume();
   void check_layout() const;
+  void check_rows() const;
   void cut();
   void open_checkpoints();
   hdf5::RowStorage storage(const Column& column) const;
@@ -71,7 +71,6 @@ class Hdf5Recorder final : public Recorder {
   std::optional<CheckpointStore> checkpoints_;
   std::optional<Checkpoint> resume_point_;
   std::vector<std::int64_t> resume_rows_;  ///< by series
-  std::uint64_t room_ = 0;                 ///< bytes that a flush may need beyond the end of the file
   std::future<void> created_;              ///< last, so that its thread ends before what it uses
 };
 

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "base/error.hpp"
+#include "base/special_file.hpp"
 #include "base/text.hpp"
 #include "results/hdf5_file.hpp"
 #include "results/xdmf_drawing.hpp"
@@ -183,6 +184,7 @@ class Writer {
 };
 
 void write_file(const std::filesystem::path& path, const std::string& text) {
+  base::refuse_special_output(path.string());
   std::ofstream out(path, std::ios::binary | std::ios::trunc);
   out << text << std::flush;
   if (!out) throw base::EnvironmentError("cannot write '" + path.string() + "'");

@@ -83,7 +83,38 @@ void SolidCheck::check_muscle_fields(const Entry<RecordedFields>& entry, const M
   }
 }
 
+void SolidCheck::check_electric() {
+  const std::vector<ElectricQuantity>& wanted = scene_.record.electric;
+  const auto wrong = [&](const std::string& why) { check_.error({"record", "electric"}, why); };
+  const auto failed_any = [&](const auto& family) {
+    return std::any_of(family.begin(), family.end(), [&](const auto& entry) { return failed(entry.origin); });
+  };
+  if (wanted.empty() || failed_any(scene_.muscles) || failed_any(scene_.solids)) return;
+  for (auto one = wanted.begin(); one != wanted.end(); ++one) {
+    if (std::find(wanted.begin(), one, *one) == one) continue;
+    return wrong(base::in_quotes(words(*one)[static_cast<std::size_t>(*one)].word) + " stands twice");
+  }
+  bool has_source = false;
+  bool has_capacitance = false;
+  for (const Entry<Muscle>& muscle : scene_.muscles) {
+    has_source |= muscle.value.control.has_value();
+    has_capacitance |= muscle.value.control && muscle.value.layer_thickness;
+  }
+  for (const Entry<Solid>& solid : scene_.solids) {
+    has_source |= has_field(solid.value);
+    has_capacitance |= !solid.value.electrodes.empty();
+  }
+  if (!has_source) {
+    wrong("no muscle has a control and no solid a field: there is nothing to record");
+  } else if (!has_capacitance && std::ranges::count(wanted, ElectricQuantity::capacitance) > 0) {
+    wrong(
+        "nothing has a capacitance: it is that of an electrode of a solid, or of a layer of a muscle with a "
+        "control and a layer_thickness");
+  }
+}
+
 void SolidCheck::record() {
+  check_electric();
   for (const Entry<RecordedFields>& entry : scene_.record.fields) {
     if (failed(entry.origin)) continue;
     const bool electric = std::any_of(entry.value.fields.begin(), entry.value.fields.end(), is_electric);

@@ -39,6 +39,7 @@ class SolidCheck {
   void check_probe_point(ProbePoint& point);
   void check_along(const Entry<Probe>& probe, const std::optional<Vec3>& along);
   void check_muscle_fields(const Entry<RecordedFields>& entry, const Muscle& muscle, bool electric);
+  void check_electric();
   void check_potential(const Origin& origin, const SolidName& solid);
 
   bool failed(const Origin& origin) const { return context_.failed(origin.path); }

@@ -8,6 +8,7 @@
 #include "scene/bodies.hpp"
 #include "scene/entries.hpp"
 #include "scene/joints.hpp"
+#include "scene/rigid_velocity.hpp"
 #include "scene/solids.hpp"
 
 namespace muldi::scene {
@@ -67,26 +68,8 @@ inline CoordinateField momentum_field(std::string_view doc, std::span<const Coor
           .coordinates = coordinates};
 }
 
-/// Initial velocity of a body, world axes.
-struct BodyVelocity {
-  std::optional<Vec3> velocity = {};  ///< of the centre of mass
-  std::optional<Vec3> angular_velocity = {};
-
-  template <class Self, class Visit>
-  static void describe(Self& self, Visit& visit) {
-    using namespace base;
-    constexpr auto optional = Need::optional;
-    visit(Field{.key = "velocity",
-                .doc = "velocity of the centre of mass, world axes",
-                .unit = dimension::velocity,
-                .need = optional},
-          self.velocity);
-    visit(Field{.key = "angular_velocity",
-                .doc = "angular velocity, world axes",
-                .unit = dimension::angular_velocity,
-                .need = optional},
-          self.angular_velocity);
-  }
+/// Initial velocity of a body.
+struct BodyVelocity : RigidVelocity {
   friend bool operator==(const BodyVelocity&, const BodyVelocity&) = default;
 };
 

@@ -47,4 +47,11 @@ const Node* node_at(const Node& root, std::string_view path) {
   return node;
 }
 
+std::vector<std::string> names_in(const Node& map) {
+  std::vector<std::string> names;
+  names.reserve(map.entries.size());
+  for (const MapEntry& entry : map.entries) names.push_back(entry.key);
+  return names;
+}
+
 }  // namespace muldi::scene

@@ -22,4 +22,7 @@ std::optional<std::vector<KeyStep>> parse_key_path(std::string_view path);
 /// The node at a path; null if there is none.
 const Node* node_at(const Node& root, std::string_view path);
 
+/// The keys of a map.
+std::vector<std::string> names_in(const Node& map);
+
 }  // namespace muldi::scene

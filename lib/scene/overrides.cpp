@@ -1,5 +1,6 @@
 #include "scene/overrides.hpp"
 
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -9,6 +10,16 @@
 
 namespace muldi::scene {
 namespace {
+
+/// Sections of named entries, with what one of them is called.
+constexpr std::array<std::array<std::string_view, 2>, 8> sections{{{"materials", "material"},
+                                                                   {"bodies", "body"},
+                                                                   {"joints", "joint"},
+                                                                   {"controls", "control"},
+                                                                   {"muscles", "muscle"},
+                                                                   {"solids", "solid"},
+                                                                   {"springs", "spring"},
+                                                                   {"loads", "load"}}};
 
 void mark_all(Node& node, const Mark& mark) {
   node.mark = mark;
@@ -46,7 +57,26 @@ Node* child(Node& node, const KeyStep& step, const Mark& mark, std::string& mess
   return &node.entries.back().value;
 }
 
+/// What is wrong with a path that leads into an entry which its section lacks; empty where nothing is.
+std::string missing_entry(const Node& root, const std::vector<KeyStep>& steps) {
+  if (steps.size() < 3 || steps[1].is_index) return {};
+  const std::string_view noun = noun_of(steps[0].key);
+  const Node* section = noun.empty() ? nullptr : root.find(steps[0].key);
+  if (section == nullptr || !section->is_map() || section->entries.empty()) return {};
+  if (section->find(steps[1].key) != nullptr) return {};
+  const std::vector<std::string> names = names_in(*section);
+  return base::format("the scene has no {} '{}'{}; a new one is set as a whole: {}.{}={{...}}", noun, steps[1].key,
+                      base::did_you_mean(steps[1].key, names), steps[0].key, steps[1].key);
+}
+
 }  // namespace
+
+std::string_view noun_of(std::string_view section) {
+  for (const auto& [name, noun] : sections) {
+    if (name == section) return noun;
+  }
+  return {};
+}
 
 std::string override_name(std::string_view override) { return "--set " + std::string(override); }
 
@@ -57,6 +87,11 @@ void apply_override(Node& root, const std::string& override, int source, std::ve
   if (equals == override.npos || !steps) {
     diagnostics.push_back(
         {.place = place, .message = "needs path=value, such as dynamics.step=1 or loads.push.force[2]=3"});
+    return;
+  }
+  if (std::string message = missing_entry(root, *steps); !message.empty()) {
+    const std::string path = base::format("{}.{}", (*steps)[0].key, (*steps)[1].key);
+    diagnostics.push_back({.place = place, .path = path, .message = std::move(message)});
     return;
   }
   const std::string_view text = std::string_view(override).substr(equals + 1);

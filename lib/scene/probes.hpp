@@ -31,6 +31,24 @@ inline std::span<const base::Word<SolidField>> words(SolidField) {
   return all;
 }
 
+/// What is recorded of every driven muscle and every electrode beside its charge.
+enum class ElectricQuantity { capacitance, stored_energy, supplied_energy };
+
+inline std::span<const base::Word<ElectricQuantity>> words(ElectricQuantity) {
+  using enum ElectricQuantity;
+  static constexpr base::Word<ElectricQuantity> all[] = {
+      {.word = "capacitance",
+       .value = capacitance,
+       .doc =
+           "charge a volt at the present shape: of an electrode, or of one layer of a muscle with a layer_thickness"},
+      {.word = "stored_energy", .value = stored_energy, .doc = "energy of the electric field, +1/2 C U^2"},
+      {.word = "supplied_energy",
+       .value = supplied_energy,
+       .doc = "integral of U dQ since the first row: what the sources have given, < 0 where they have gained"},
+  };
+  return all;
+}
+
 /// Fields of one solid. In the input a list, or {fields, every}.
 struct RecordedFields {
   std::vector<SolidField> fields = {};

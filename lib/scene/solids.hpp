@@ -13,6 +13,7 @@
 #include "scene/entries.hpp"
 #include "scene/formulation.hpp"
 #include "scene/materials.hpp"
+#include "scene/rigid_velocity.hpp"
 
 namespace muldi::scene {
 
@@ -203,26 +204,8 @@ std::vector<std::string> face_names_of(const fem::MeshType& mesh);
 /// Names of the parts that the mesh will have; empty where only its file knows.
 std::vector<std::string> part_names_of(const fem::MeshType& mesh);
 
-/// Initial velocity of a solid as a rigid body, world axes.
-struct SolidVelocity {
-  std::optional<Vec3> velocity = {};
-  std::optional<Vec3> angular_velocity = {};
-
-  template <class Self, class Visit>
-  static void describe(Self& self, Visit& visit) {
-    using namespace base;
-    constexpr auto optional = Need::optional;
-    visit(Field{.key = "velocity",
-                .doc = "velocity of the centre of mass, world axes",
-                .unit = dimension::velocity,
-                .need = optional},
-          self.velocity);
-    visit(Field{.key = "angular_velocity",
-                .doc = "angular velocity about the centre of mass, world axes",
-                .unit = dimension::angular_velocity,
-                .need = optional},
-          self.angular_velocity);
-  }
+/// Initial velocity of a solid as a rigid body.
+struct SolidVelocity : RigidVelocity {
   friend bool operator==(const SolidVelocity&, const SolidVelocity&) = default;
 };
 

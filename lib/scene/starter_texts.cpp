@@ -6,14 +6,22 @@
 namespace muldi::scene {
 namespace {
 
-constexpr std::string_view joint = R"yaml(# yaml-language-server: $schema=../schemas/scene.schema.json
-# A hinged bar between two antagonistic muscles. The first pulls from t = 0; without a field the bar stays where it is.
-# Run it:     muldi-sim run joint.yaml        Look at it:  muldi-sim report joint.h5 -o joint.html
-# Any key:    muldi-sim explain muscles.upper.section
-muldi: 1
-title: Hinge with two muscles
+/// Texts one after the other, as one text.
+template <const std::string_view&... parts>
+struct Joined {
+  static constexpr auto letters = [] {
+    std::array<char, (parts.size() + ...)> all{};
+    std::size_t at = 0;
+    for (const std::string_view part : {parts...}) {
+      for (const char letter : part) all[at++] = letter;
+    }
+    return all;
+  }();
+  static constexpr std::string_view text{letters.data(), letters.size()};
+};
 
-materials:
+// What the joint and its optimal control share.
+constexpr std::string_view hinge = R"yaml(materials:
   silicone:
     density: 1 g/cm^3
     elastic: {model: neo_hookean, young: 0.7 MPa, poisson: 0.5}
@@ -48,7 +56,17 @@ muscles:
     control: agonist
   lower: {<<: *muscle, from: {body: ground, at: [-10, -15, 0]}, to: {body: bar, at: lower}, control: antagonist}
 
-statics:
+)yaml";
+
+constexpr std::string_view joint_head = R"yaml(# yaml-language-server: $schema=../schemas/scene.schema.json
+# A hinged bar between two antagonistic muscles. The first pulls from t = 0; without a field the bar stays where it is.
+# Run it:     muldi-sim run joint.yaml        Look at it:  muldi-sim report joint.h5 -o joint.html
+# Any key:    muldi-sim explain muscles.upper.section
+muldi: 1
+title: Hinge with two muscles
+
+)yaml";
+constexpr std::string_view joint_tasks = R"yaml(statics:
   steps: 6
 
 dynamics:
@@ -195,7 +213,7 @@ record:
   probes: {height: {distance: ["block@[-1, -1, 0]", "block@[-1, 1, 0]"], along: [0, 1, 0]}}
 )yaml";
 
-constexpr std::string_view optimal = R"yaml(# yaml-language-server: $schema=../schemas/scene.schema.json
+constexpr std::string_view optimal_head = R"yaml(# yaml-language-server: $schema=../schemas/scene.schema.json
 # A hinged bar is to turn by 7 degrees in 200 ms and be at rest there. Which fields of its two muscles take the least
 # effort, if the bar never turns beyond 7.5 degrees and the field in the deformed muscles stays below 50 kV/mm? The replay
 # runs what was found in finer steps and holds the bar afterwards.
@@ -204,42 +222,8 @@ constexpr std::string_view optimal = R"yaml(# yaml-language-server: $schema=../s
 muldi: 1
 title: Hinge with two muscles, least effort
 
-materials:
-  silicone:
-    density: 1 g/cm^3
-    elastic: {model: neo_hookean, young: 0.7 MPa, poisson: 0.5}
-    electric: {model: ideal_dielectric, relative_permittivity: 3.1}
-    viscous: {model: kelvin_voigt, viscosity: 10 g/(ms*mm)}
-
-bodies:
-  bar:
-    mass: 40 g
-    inertia: [1.0e+5, 3.17e+5, 3.17e+5]
-    position: [46, 0, 0]
-    points: {pivot: [-46, 0, 0], upper: [44, 15, 0], lower: [44, -15, 0]}
-
-joints:
-  hinge:
-    type: revolute
-    from: {body: ground, at: [0, 0, 0]}
-    to: {body: bar, at: pivot}
-    axis: [0, 0, 1]
-
-controls:
-  agonist: {field: 30 kV/mm}
-  antagonist: {field: 0}
-
-muscles:
-  upper: &muscle
-    model: lumped
-    from: {body: ground, at: [-10, 15, 0]}
-    to: {body: bar, at: upper}
-    section: {shape: round, diameter: 11}
-    material: silicone
-    control: agonist
-  lower: {<<: *muscle, from: {body: ground, at: [-10, -15, 0]}, to: {body: bar, at: lower}, control: antagonist}
-
-optimal_control:
+)yaml";
+constexpr std::string_view optimal_tasks = R"yaml(optimal_control:
   duration: 200 ms
   step: 10 ms
   controls:
@@ -264,11 +248,15 @@ record:
 )yaml";
 
 constexpr std::array all{
-    StarterText{.kind = "joint", .doc = "a hinged bar between two antagonistic muscles", .text = joint},
+    StarterText{.kind = "joint",
+                .doc = "a hinged bar between two antagonistic muscles",
+                .text = Joined<joint_head, hinge, joint_tasks>::text},
     StarterText{.kind = "muscle", .doc = "one actuator with free ends: statics and dynamics", .text = muscle},
     StarterText{.kind = "trunk", .doc = "a chain of three bodies with six muscles", .text = trunk},
     StarterText{.kind = "solid", .doc = "finite elements with an electrode, fields for ParaView", .text = solid},
-    StarterText{.kind = "optimal", .doc = "the joint of least effort: limits, stages and a replay", .text = optimal},
+    StarterText{.kind = "optimal",
+                .doc = "the joint of least effort: limits, stages and a replay",
+                .text = Joined<optimal_head, hinge, optimal_tasks>::text},
 };
 
 }  // namespace

@@ -1,6 +1,5 @@
 // The scene of a study: points by overrides, keys with `*`, its text with entries replaced.
 #include <algorithm>
-#include <array>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -13,30 +12,6 @@
 
 namespace muldi::scene {
 namespace {
-
-/// Sections of named entries, with what one of them is called.
-constexpr std::array<std::array<std::string_view, 2>, 8> sections{{{"materials", "material"},
-                                                                   {"bodies", "body"},
-                                                                   {"joints", "joint"},
-                                                                   {"controls", "control"},
-                                                                   {"muscles", "muscle"},
-                                                                   {"solids", "solid"},
-                                                                   {"springs", "spring"},
-                                                                   {"loads", "load"}}};
-
-std::string_view noun_of(std::string_view section) {
-  for (const auto& [name, noun] : sections) {
-    if (name == section) return noun;
-  }
-  return {};
-}
-
-std::vector<std::string> names_in(const Node& map) {
-  std::vector<std::string> names;
-  names.reserve(map.entries.size());
-  for (const MapEntry& entry : map.entries) names.push_back(entry.key);
-  return names;
-}
 
 /// Byte of the text at which a mark stands; npos if the text is shorter.
 std::size_t offset_of(const std::string& text, const Mark& mark) {

@@ -96,6 +96,7 @@ struct Record {
   std::vector<RecordedPoint> points = {};
   Named<RecordedFields> fields = {};  ///< by solid
   Named<Probe> probes = {};
+  std::vector<ElectricQuantity> electric = {};
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit& visit) {
@@ -112,6 +113,10 @@ struct Record {
                 .need = optional},
           self.fields);
     visit(Field{.key = "probes", .doc = "numbers and vectors over time by name", .need = optional}, self.probes);
+    visit(Field{.key = "electric",
+                .doc = "figures of all electrodes and driven muscles beside their charge; without it none is computed",
+                .need = optional},
+          self.electric);
   }
   friend bool operator==(const Record&, const Record&) = default;
 };

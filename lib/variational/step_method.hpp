@@ -16,6 +16,7 @@ struct StepReport {
   double residual = 0.0;  ///< largest projected residual relative to the largest term of it
   model::IntervalWork work;
   double rotation = 0.0;         ///< largest turn of a body in the step (rad)
+  int turning = -1;              ///< node of the model that is this body; none: nothing turns
   double loop_regularity = 1.0;  ///< relative to that at the start; 0 where the step passed a change of rank
   double violation = 0.0;        ///< of the constraints inside substructures at the end, dimensionless
 };

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/mutation.hpp"
+#include "base/text.hpp"
 
 namespace muldi::variational {
 namespace {
@@ -341,11 +342,13 @@ void Stepper::carry_residual() {
 
 void Stepper::finish(State& state, std::span<const double> u, StepReport& report) {
   if (!evaluated_) evaluate(state, u);
-  report.rotation = manifold_.largest_rotation(state.q, q_);
+  const model::Turn turn = manifold_.largest_turn(state.q, q_);
+  report.rotation = turn.angle;
+  report.turning = turn.node;
   if (report.rotation > options_.refuse_rotation) {
     report.status = Status::step_too_large;
-    report.sentence = "a body turns by " + std::to_string(report.rotation) + " rad in one step (limit " +
-                      std::to_string(options_.refuse_rotation) + "): use a smaller step";
+    report.sentence = base::format("{} turns by {:.3g} rad in one step (limit {:g}): use a smaller step",
+                                   model_.body_at(turn.node), turn.angle, options_.refuse_rotation);
     return;
   }
   if (manifold_.n_c() > 0) {

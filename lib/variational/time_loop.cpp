@@ -8,6 +8,8 @@ namespace muldi::variational {
 
 namespace {
 
+constexpr long first_look = -(1L << 40);
+
 std::unique_ptr<StepMethod> make_method(const model::Model& model, const LoopOptions& options) {
   if (options.integrator == Integrator::midpoint) return std::make_unique<Stepper>(model, options.dt, options.step);
   return std::make_unique<ExplicitStepper>(model, options.dt);
@@ -20,8 +22,12 @@ TimeLoop::TimeLoop(const model::Model& model, LoopOptions options)
       options_(std::move(options)),
       stepper_(make_method(model, options_)),
       nodes_(model, options_.step.linear, options_.step.substructures),
+      supply_(model),
+      looks_(first_look),
       u_before_(model.controls.size()),
-      u_(model.controls.size()) {}
+      u_(model.controls.size()) {
+  values_.v = Eigen::VectorXd::Zero(model.n_q());
+}
 
 void TimeLoop::controls_of(const State& state) {
   const double middle = 0.5 * options_.dt;
@@ -57,6 +63,7 @@ LoopResult TimeLoop::run(State& state, Ledger& ledger, StepReport& last, const L
     }
     double jump = 0.0;
     if (u_ != u_before_) jump = nodes_.electric(state, u_) - nodes_.electric(state, u_before_);
+    if (supply_.is_kept()) book_supply(state, ledger);
     before_ = state;
     const StepReport report = stepper_->advance(state, u_);
     if (report.status != Status::running) {
@@ -69,6 +76,7 @@ LoopResult TimeLoop::run(State& state, Ledger& ledger, StepReport& last, const L
     ledger.dissipated += report.work.dissipated;
     ledger.external += report.work.external;
     ledger.source += jump;
+    if (supply_.is_kept()) ledger.supply = supply_after_;
     ++result.statistics.steps;
     result.statistics.iterations += report.iterations;
     result.statistics.factorisations += report.factorisations;
@@ -88,6 +96,27 @@ LoopResult TimeLoop::run(State& state, Ledger& ledger, StepReport& last, const L
   return result;
 }
 
+void TimeLoop::book_supply(const State& state, Ledger& ledger) {
+  // Charges depend on positions and controls: velocities may be those of an earlier node.
+  const auto view = [&](const std::vector<double>& u) {
+    return model::NodeView{.serial = looks_--,
+                           .t = state.t,
+                           .x = state.x,
+                           .rate = values_.rate,
+                           .q = state.q,
+                           .v = values_.v,
+                           .constraint_force = values_.v,
+                           .multipliers = state.multipliers,
+                           .y = state.y,
+                           .u = u};
+  };
+  if (state.step == 0) supply_.open(view(u_before_), ledger.supply);
+  supply_after_ = ledger.supply;
+  if (u_ == u_before_) return;
+  supply_.stand(view(u_before_));
+  supply_.change(view(u_), supply_after_);
+}
+
 void TimeLoop::record(const LoopCallbacks& callbacks, const State& state, const Ledger& ledger, const StepReport& last,
                       const Reactions& reactions) {
   if (!callbacks.record) return;
@@ -104,6 +133,21 @@ void TimeLoop::record(const LoopCallbacks& callbacks, const State& state, const 
                     .last = reactions.last});
 }
 
+model::NodeView view_of(const NodeRecord& node) {
+  return {.serial = node.step,
+          .t = node.t,
+          .x = node.state.x,
+          .rate = node.values.rate,
+          .q = node.state.q,
+          .v = node.values.v,
+          .constraint_force = node.constraint_force,
+          .multipliers = node.multipliers,
+          .y = node.state.y,
+          .u = node.u,
+          .y_after = &node.y_after,
+          .accounts = node.ledger.supply};
+}
+
 void TimeLoop::record_end(const LoopCallbacks& callbacks, const State& state, Ledger& ledger, const StepReport& last) {
   // At the last node there is no following step. The reactions are those that make its momentum consistent with the
   // constraints: p_N - (dt/2) G^T lambda_N = M v_N.
@@ -112,6 +156,7 @@ void TimeLoop::record_end(const LoopCallbacks& callbacks, const State& state, Le
   if (callbacks.checkpoint) callbacks.checkpoint(state, ledger, last);
   if (!nodes_.evaluate(state, u_before_, u_, values_)) return;
   if (state.step == 0) ledger.initial_total = values_.total.kinetic + values_.total.potential();
+  if (state.step == 0 && supply_.is_kept()) book_supply(state, ledger);
   const double half = 0.5 * options_.dt;
   end_force_ = values_.momentum - state.p;
   for (const auto& part : model_.substructures) {

@@ -1,7 +1,10 @@
 #pragma once
 /// Runs a model from a state over a number of steps and hands every node to an observer, with the energy ledger.
 #include <functional>
+#include <vector>
 
+#include "model/observable.hpp"
+#include "model/supply.hpp"
 #include "variational/node_values.hpp"
 #include "variational/stepper.hpp"
 
@@ -12,7 +15,8 @@ struct Ledger {
   double dissipated = 0.0;
   double external = 0.0;
   double source = 0.0;  ///< work of control jumps: electric enthalpy after minus before, summed over the nodes passed
-  double initial_total = 0.0;  ///< energy at t = 0
+  double initial_total = 0.0;       ///< energy at t = 0
+  std::vector<double> supply = {};  ///< accounts of the electric sources (model/supply.hpp), where they are kept
 };
 
 /// Counts over the run.
@@ -38,6 +42,9 @@ struct NodeRecord {
   const StepReport& report;                 ///< of the step that ends here
   bool last = false;                        ///< no step follows
 };
+
+/// What observables see of the node; its serial number is the step.
+model::NodeView view_of(const NodeRecord& node);
 
 enum class Integrator { midpoint, explicit_scheme };
 
@@ -85,11 +92,16 @@ class TimeLoop {
   void record(const LoopCallbacks& callbacks, const State& state, const Ledger& ledger, const StepReport& last,
               const Reactions& reactions);
   void record_end(const LoopCallbacks& callbacks, const State& state, Ledger& ledger, const StepReport& last);
+  /// Opens the accounts of the sources at t = 0; leaves in supply_after_ those after the change of the controls here.
+  void book_supply(const State& state, Ledger& ledger);
 
   const model::Model& model_;
   LoopOptions options_;
   std::unique_ptr<StepMethod> stepper_;
   NodeEvaluator nodes_;
+  model::SupplyBook supply_;
+  long looks_;  // serials of its views, none of which is a record's
+  std::vector<double> supply_after_;
   NodeValues values_;
   State before_;
   std::vector<double> u_before_;

@@ -13,6 +13,7 @@
 
 #include "base/error.hpp"
 #include "scene/read_scene.hpp"
+#include "support/figure.hpp"
 
 namespace muldi::scene {
 namespace {
@@ -67,6 +68,14 @@ std::vector<std::string> refusal(const fs::path& path, const std::vector<std::st
   return lines;
 }
 
+/// Lines of two lists that are not the same at the same place.
+double n_different(const std::vector<std::string>& first, const std::vector<std::string>& second) {
+  const std::size_t n = std::max(first.size(), second.size());
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < std::min(first.size(), second.size()); ++i) same += first[i] == second[i] ? 1 : 0;
+  return static_cast<double>(n - same);
+}
+
 /// A file of the test's own that is gone at the end.
 class OwnFile {
  public:
@@ -95,7 +104,10 @@ TEST_P(BadScene, SaysWhatItExpects) {
   const std::vector<std::string> lines = lines_of(path);
   const std::vector<std::string> expected = comments(lines, "expect");
   ASSERT_FALSE(expected.empty()) << "the scene expects nothing";
-  EXPECT_EQ(refusal(path, comments(lines, "set")), expected);
+  const std::vector<std::string> said = refusal(path, comments(lines, "set"));
+  EXPECT_EQ(said, expected);
+  test::record_figure("32", "a bad scene, lines of its refusal that are not as expected", n_different(said, expected),
+                      0.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Reader, BadScene, testing::ValuesIn(scenes_of_the_reader()),

@@ -1,6 +1,7 @@
 /// Optimal control: reference-results B, closed forms of the discrete problems, replays.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/text.hpp"
@@ -243,6 +244,50 @@ TEST(FourBarOptimal, IsDrivenAtTheJointThatClosesTheLoop) {
                        {"joints.D.stiffness=20", "joints.D.damping=100", "joints.D.torque={control: drive}"});
   ASSERT_TRUE(run.completed()) << run.found().outcome.sentence;
   EXPECT_LT(run.largest_deviation(), 1e-6);
+}
+
+TEST(FourBarOptimal, TakesTheCoordinateOfTheJointThatClosesTheLoopAsThatOfAnyOther) {
+  const OptimalRun crank("four_bar_optimal", {no_replay});
+  ASSERT_TRUE(crank.completed()) << crank.found().outcome.sentence;
+  const std::span<const double> rocker = crank.recorder().reals("joints/D/coordinate");
+  const double end = rocker.back();
+  const OptimalRun same("four_bar_optimal",
+                        {base::format("optimal_control.final.joints={{D: {:.17g}}}", end), no_replay});
+  ASSERT_TRUE(same.completed()) << same.found().outcome.sentence;
+  EXPECT_NEAR(same.objective(), crank.objective(), 1e-8 * crank.objective());
+  EXPECT_NEAR(same.recorder().reals("joints/A/coordinate").back(), 90.0 * degree, 1e-9);
+  // The effort may also be left to a squared distance, of which the target is the least value.
+  const OptimalRun near("four_bar_optimal", {"optimal_control.final.joints={}",
+                                             base::format("optimal_control.stages=[{{minimise: {{terminal: {{joints: "
+                                                          "{{D: {:.17g}}}}}}}}}]",
+                                                          end),
+                                             no_replay});
+  ASSERT_TRUE(near.completed()) << near.found().outcome.sentence;
+  EXPECT_NEAR(near.recorder().reals("joints/D/coordinate").back(), end, 1e-6);
+}
+
+TEST(FourBarOptimal, KeepsALimitOfTheJointThatClosesTheLoop) {
+  const OptimalRun free("four_bar_optimal", {no_replay});
+  ASSERT_TRUE(free.completed()) << free.found().outcome.sentence;
+  const std::span<const double> rocker = free.recorder().reals("joints/D/coordinate");
+  const double least = *std::ranges::min_element(rocker);
+  const double most = *std::ranges::max_element(rocker);
+  // A range that the motion just fits changes nothing; inside it the motion stays where it is narrower.
+  const auto limited = [&](double lower, double upper) {
+    return OptimalRun("four_bar_optimal",
+                      {base::format("optimal_control.limits={{joints: {{D: [{:.15g}, {:.15g}]}}}}", lower, upper),
+                       "optimal_control.final.joints={}",
+                       "optimal_control.stages=[{minimise: {terminal: {joints: {A: 90 deg}}}}]", no_replay});
+  };
+  const OptimalRun wide = limited(least - 0.01, most + 0.01);
+  ASSERT_TRUE(wide.completed()) << wide.found().outcome.sentence;
+  EXPECT_LT(wide.objective(), 1e-8);
+  const double middle = 0.5 * (least + most);
+  const bool falls = rocker.back() < rocker.front();
+  const OptimalRun narrow = falls ? limited(middle, most + 0.01) : limited(least - 0.01, middle);
+  ASSERT_TRUE(narrow.completed()) << narrow.found().outcome.sentence;
+  EXPECT_TRUE(is_active(narrow, "limits.joints.D"));
+  EXPECT_NEAR(narrow.recorder().reals("joints/D/coordinate").back(), middle, 1e-6);
 }
 
 }  // namespace

@@ -14,19 +14,6 @@ Run run(const model::Model& model, variational::State state, const RunSetup& set
   return result;
 }
 
-model::NodeView view_of(const variational::NodeRecord& node) {
-  return {.serial = node.step,
-          .t = node.t,
-          .x = node.state.x,
-          .rate = node.values.rate,
-          .q = node.state.q,
-          .v = node.values.v,
-          .constraint_force = node.constraint_force,
-          .multipliers = node.multipliers,
-          .y = node.state.y,
-          .u = node.u};
-}
-
 NodeSample sample(const model::Model& model, const variational::State& state, const RunSetup& setup) {
   NodeSample result;
   // One step more: the reactions at a node come from the step that follows it.

@@ -26,9 +26,6 @@ using Visit = std::function<void(const variational::NodeRecord&)>;
 /// Runs the time loop from `state` and shows every node to `visit`, if given.
 Run run(const model::Model& model, variational::State state, const RunSetup& setup, const Visit& visit = {});
 
-/// A node of a run as observables see it.
-model::NodeView view_of(const variational::NodeRecord& node);
-
 /// What is compared at one node: all second order in dt.
 struct NodeSample {
   Eigen::VectorXd q;

@@ -2,9 +2,10 @@
 # they share is instantiated, once. Off by default, since a change then compiles its neighbours too.
 option(MULDI_BATCHES "Compile the sources of a target in batches: a whole build is shorter, a change costs more" OFF)
 
-# In a batch a local name may be that of a function of a neighbour, and no source is the main one.
+# In a batch a local name may be that of a function of a neighbour: shadowed names are warned of, and tools/prepare tells those apart
+# that are faults of one source. No source is the main one.
 add_library(muldi_batch_warnings INTERFACE)
-target_compile_options(muldi_batch_warnings INTERFACE -Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+target_compile_options(muldi_batch_warnings INTERFACE -Wno-error=shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 
 # The names that a source file defines at file or namespace scope, as clang-format leaves them: at the start of a line.
 function(muldi_names_defined source result)

@@ -31,6 +31,14 @@ class Panel:
     zero_line: bool = False
     markers: bool = False
     held: bool = False  # each value holds over the interval that ends at its time
+    plain_log_x: bool = False  # a logarithmic axis without guides of orders
+    scatter: bool = False  # points without lines
+    ticks: list = None  # words in the place of the numbers 0, 1, ... of the axis
+    failed: numpy.ndarray = None  # where points of a sweep failed
+    grid: object = None  # values over two numbers, in colours
+    intervals: list = None  # parameters of a fit
+    colours: list = None  # numbers of colours by name, where these mean something
+    wide_first: bool = False  # the first curve is a wide line under the others
 
 
 class Panels:

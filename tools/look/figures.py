@@ -10,6 +10,9 @@ matplotlib.use("Agg")
 import matplotlib.lines  # noqa: E402  after the choice of what draws
 import matplotlib.pyplot as pyplot  # noqa: E402
 import matplotlib.ticker  # noqa: E402
+import matplotlib.transforms  # noqa: E402
+
+import study_figures  # noqa: E402
 
 # Okabe and Ito: told apart by everyone, also in grey.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999")
@@ -31,7 +34,9 @@ STYLE = {
     "ytick.major.width": 0.6,
     "lines.linewidth": 1.1,
     "lines.markersize": 3.5,
-    "legend.frameon": False,
+    "legend.frameon": True,  # what lies below is seen as such
+    "legend.framealpha": 0.8,
+    "legend.edgecolor": "none",
     "legend.fontsize": 7,
     "legend.handlelength": 1.8,
     "axes.formatter.limits": (-3, 5),
@@ -49,8 +54,14 @@ class Formatter(matplotlib.ticker.ScalarFormatter):
 
     def get_offset(self):
         offset = super().get_offset().replace("\u2212", "-")
-        power = re.fullmatch(r"1e([+-]?[0-9]+)", offset)
-        return rf"$\times 10^{{{int(power.group(1))}}}$" if power else offset
+        found = re.fullmatch(r"(?:1e([+-]?[0-9]+))?(?:([+-])([0-9.]+)(?:e([+-]?[0-9]+))?)?", offset)
+        if not found:
+            return offset
+        factor, sign, number, power = found.groups()
+        text = rf"\times 10^{{{int(factor)}}}" if factor else ""
+        text += rf"{sign}{number}" if sign else ""
+        text += rf"\times 10^{{{int(power)}}}" if power else ""
+        return f"${text}$" if text else ""
 
 
 def line(colour, dashes, label):
@@ -67,12 +78,15 @@ def styles_of(panel):
         name, source = names.index(curve.name), sources.index(curve.source)
         if len(names) == 1:
             return COLOURS[source % len(COLOURS)], DASHES[source % len(DASHES)]
+        if panel.colours:
+            return COLOURS[panel.colours[name]], "-"
         return COLOURS[name % len(COLOURS)], DASHES[(source if len(sources) > 1 else name // len(COLOURS)) % len(DASHES)]
 
     styles = [style(curve) for curve in panel.curves]
     if len(names) == 1 or len(sources) == 1:
         labels = [curve.source if len(names) == 1 else curve.name for curve in panel.curves]
-        return styles, [line(*each, label) for each, label in zip(styles, labels)] if len(labels) > 1 or panel.markers else []
+        named = len(labels) > 1 or (panel.markers and any(labels))
+        return styles, [line(*each, label) for each, label in zip(styles, labels)] if named else []
     entries = [line(COLOURS[i % len(COLOURS)], "-", name) for i, name in enumerate(names)]
     return styles, entries + [line("#555555", DASHES[i % len(DASHES)], source) for i, source in enumerate(sources)]
 
@@ -109,13 +123,21 @@ def draw_steps(axes, panel):
 
 
 def draw(axes, panel):
+    if panel.grid is not None:
+        study_figures.draw_map(axes, panel, Formatter())
+        return
+    if panel.intervals is not None:
+        study_figures.draw_intervals(axes, panel, COLOURS)
+        return
     styles, entries = styles_of(panel)
     axes.xaxis.set_major_formatter(Formatter())
     axes.yaxis.set_major_formatter(Formatter())
     unstable = False
     for curve, (colour, dashes) in zip(panel.curves, styles):
-        marker = "o" if panel.markers or len(curve.x) < 12 else None
-        unstable |= draw_curve(axes, curve, colour, dashes, marker, panel.held)
+        marker = "o" if panel.markers or panel.scatter or len(curve.x) < 12 else None
+        unstable |= draw_curve(axes, curve, colour, "none" if panel.scatter else dashes, marker, panel.held)
+        if panel.wide_first and curve is panel.curves[0]:
+            axes.lines[-1].set(linewidth=3.5, alpha=0.7)
     if unstable:
         entries.append(line("#555555", (0, (1, 1.2)), "unstable"))
     if panel.zero_line:
@@ -125,6 +147,12 @@ def draw(axes, panel):
         draw_steps(axes, panel)
     if panel.log_y:
         axes.set_yscale("log")
+    if panel.plain_log_x:
+        axes.set_xscale("log")
+    if panel.ticks:
+        axes.set_xticks(range(len(panel.ticks)), panel.ticks)
+    if panel.failed is not None and len(panel.failed):
+        entries.append(study_figures.draw_failed(axes, panel))
     axes.set_title(panel.title)
     axes.set_xlabel(panel.x_label)
     axes.set_ylabel(panel.y_label)
@@ -142,8 +170,10 @@ def add_legend(axes, entries):
     if len(entries) <= 4 and longest <= 22:
         axes.legend(handles=entries, loc="best", borderaxespad=0.2)
     else:
+        # Below the numbers and the label of the axis, however high the axes are.
+        below = axes.transAxes + matplotlib.transforms.ScaledTranslation(0, -34 / 72, axes.figure.dpi_scale_trans)
         columns = 1 if longest > 26 else 2 if longest > 18 else 3 if longest > 12 else 4
-        axes.legend(handles=entries, loc="upper left", bbox_to_anchor=(-0.08, -0.3), ncol=columns, borderaxespad=0, columnspacing=1.2)
+        axes.legend(handles=entries, loc="upper left", bbox_to_anchor=(-0.08, 0), bbox_transform=below, ncol=columns, borderaxespad=0, columnspacing=1.2)
 
 
 def figure_of(panels, columns=None):

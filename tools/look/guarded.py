@@ -28,6 +28,8 @@ def run(verb, body):
     except Exception as error:  # noqa: BLE001  every end has its code
         if type(error).__name__ == "WrongInput":
             fail(WRONG_INPUT, error)
+        if "h5py" in traceback.extract_tb(error.__traceback__)[-1].filename:
+            fail(WRONG_INPUT, f"a result is damaged: {error}")
         if isinstance(error, OSError):
             fail(ENVIRONMENT_FAILED, error)
         traceback.print_exc()

@@ -1,4 +1,4 @@
-"""plot.py [--what LIST] -o FIGURE FILE...: curves of result files as a figure; called by `muldi-sim plot`, which checks the words."""
+"""plot.py [--what LIST] -o FIGURE FILE...: curves of result files, tables of sweeps and fits as a figure; called by `muldi-sim plot`, which checks the words."""
 
 import argparse
 
@@ -15,9 +15,11 @@ def main():
     import curves
     import figures
     import result
+    import studies
 
     results = result.open_all(arguments.files)
-    panels = curves.all_panels(results, [kind for kind in arguments.what.split(",") if kind])
+    kinds = [kind for kind in arguments.what.split(",") if kind]
+    panels = studies.panels_of(results, kinds) if studies.has_study(results) else curves.all_panels(results, kinds)
     figures.save(figures.figure_of(panels), arguments.output)
 
 

@@ -3,13 +3,12 @@ JSON on standard input."""
 
 import argparse
 import html
-import io
 import json
 import pathlib
-import re
 import sys
 
 import guarded
+from page import card, document, head_card, inline_svg, list_of, table
 
 HERE = pathlib.Path(__file__).resolve().parent
 THREE = ("three.min.js", "examples/js/controls/OrbitControls.js")
@@ -34,36 +33,8 @@ def three():
     )
 
 
-def table(heads, rows, words=(), last=None):
-    """HTML of a table; columns `words` hold text, the row whose first cell is `last` is a sum."""
-    kind = lambda i: ' class="words"' if i in words else ""  # noqa: E731
-    head = "".join(f"<th{kind(i)}>{html.escape(text)}</th>" for i, text in enumerate(heads))
-    body = "".join(
-        f"<tr{' class=sum' if last and row[0] == last else ''}>" + "".join(f"<td{kind(i)}>{html.escape(str(cell))}</td>" for i, cell in enumerate(row)) + "</tr>"
-        for row in rows
-    )
-    return f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>'
-
-
-def card(title, content, kind="", name=""):
-    return f'<section class="card {kind}"{f" id={name}" if name else ""}><h2>{html.escape(title)}</h2>{content}</section>'
-
-
-def inline_svg(figure, number):
-    """A figure as part of a page; its ids are made to differ from those of others."""
-    import figures
-
-    text = io.StringIO()
-    figures.save(figure, text, format="svg", style={"svg.fonttype": "none"})
-    svg = re.sub(r"^.*?(?=<svg)", "", text.getvalue(), flags=re.DOTALL)
-    svg = re.sub(r'\bid="([^"]+)"', rf'id="f{number}-\1"', svg)
-    svg = re.sub(r"url\(#([^)]+)\)", rf"url(#f{number}-\1)", svg)
-    return re.sub(r'xlink:href="#([^"]+)"', rf'xlink:href="#f{number}-\1"', svg)
-
-
 def plots(result):
     import curves
-    import figures
 
     parts, number = [], 0
     for kind in REPORT_KINDS:
@@ -71,7 +42,7 @@ def plots(result):
         drawn = []
         for panel in panels:
             number += 1
-            drawn.append(inline_svg(figures.figure_of([panel]), number))
+            drawn.append(inline_svg(panel, number))
         if drawn:
             parts.append(f'<h3>{kind.capitalize()}</h3><div class="plots">{"".join(drawn)}</div>')
     return "".join(parts)
@@ -131,15 +102,14 @@ def page(result, drawing):
 
     title = result.text("title") or result.path.stem
     status, kind, sentence = tables.status_of(result)
-    facts = "".join(f'<div class="fact"><b>{html.escape(value)}</b><span>{html.escape(what)}</span></div>' for value, what in tables.facts_of(result))
     warnings = tables.warnings_of(result)
     shown, scripts = view(result, drawing)
     scene = result.text("scene")
     cut = "" if len(scene) <= MAX_SCENE else f"\n... {len(scene) - MAX_SCENE} more characters"
     origin = ", ".join(result.text(name) for name in ("created", "compiler") if result.text(name))
     sections = [
-        f'<section class="card"><h1>{html.escape(title)}</h1><div class="lead"><span class="badge {kind}">{html.escape(status)}</span><span>{html.escape(sentence)}</span></div><div class="facts">{facts}</div></section>',
-        card("Warnings", "<ul>" + "".join(f"<li>{html.escape(text)}</li>" for text in warnings) + "</ul>", "warnings", "warnings") if warnings else "",
+        head_card(title, status, kind, sentence, tables.facts_of(result)),
+        card("Warnings", list_of(warnings), "warnings", "warnings") if warnings else "",
         shown,
         card("Curves", plots(result), name="curves"),
         card("Energy ledger", ledger(result), name="energy"),
@@ -147,11 +117,7 @@ def page(result, drawing):
         f'<section class="card"><details><summary>The scene, with every default</summary><pre>{html.escape(scene[:MAX_SCENE] + cut)}</pre></details></section>',
         f"<footer>{html.escape(str(result.path.name))}, made by muldi-sim {html.escape(result.text('muldi_version'))} ({html.escape(result.text('git_hash')[:12])}), {html.escape(origin)}<br><code>{html.escape(result.text('command_line'))}</code></footer>",
     ]
-    style = (HERE / "report.css").read_text(encoding="utf-8")
-    return (
-        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>{html.escape(title)}</title><style>{style}</style></head><body><main>{''.join(sections)}</main>{scripts}</body></html>\n"
-    )
+    return document(title, "".join(sections), scripts)
 
 
 def main():
@@ -163,9 +129,18 @@ def main():
 
     import result
 
+    import studies
+
     (opened,) = result.open_all([arguments.file])
+    if studies.kind_of(opened):
+        import study_report
+
+        pathlib.Path(arguments.output).write_text(study_report.page(opened), encoding="utf-8")
+        return
     if not opened.series:
         raise result.WrongInput(f"'{arguments.file}' holds no rows yet")
+    for series in opened.series:
+        series.label = series.name  # of one file: what differs is what was computed
     pathlib.Path(arguments.output).write_text(page(opened, drawing), encoding="utf-8")
 
 

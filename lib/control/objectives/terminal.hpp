@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "model/linear_point.hpp"
+#include "control/conditions.hpp"
 
 namespace muldi::control {
 
@@ -14,6 +14,7 @@ struct Terminal {
 
   struct Coordinate {
     int rate = 0;
+    CutJoint cut = {};
     double wanted = 0.0;
   };
   struct Point {
@@ -27,7 +28,7 @@ struct Terminal {
   void contribute(Sum& sum) const {
     const int n = sum.n_steps();
     for (const Coordinate& c : coordinates) {
-      sum.add_squared_coordinate(n, {.rate = c.rate, .wanted = c.wanted, .factor = 1.0});
+      sum.add_squared_coordinate(n, {.rate = c.rate, .cut = c.cut, .wanted = c.wanted, .factor = 1.0});
     }
     for (const Point& p : points) {
       for (int k = 0; k < 3; ++k) {

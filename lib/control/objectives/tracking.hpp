@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/time_function.hpp"
-#include "model/linear_point.hpp"
+#include "control/conditions.hpp"
 
 namespace muldi::control {
 
@@ -15,6 +15,7 @@ struct Tracking {
 
   struct Coordinate {
     int rate = 0;
+    CutJoint cut = {};
     base::TimeFunction wanted = {};
   };
   struct Point {
@@ -29,7 +30,8 @@ struct Tracking {
     for (int n = 1; n <= sum.n_steps(); ++n) {
       const double weight = (n == sum.n_steps() ? 0.5 : 1.0) * sum.step();
       for (const Coordinate& c : coordinates) {
-        sum.add_squared_coordinate(n, {.rate = c.rate, .wanted = c.wanted.at(n * sum.step()), .factor = weight});
+        sum.add_squared_coordinate(
+            n, {.rate = c.rate, .cut = c.cut, .wanted = c.wanted.at(n * sum.step()), .factor = weight});
       }
       for (const Point& p : points) {
         for (int k = 0; k < 3; ++k) {

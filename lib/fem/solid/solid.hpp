@@ -86,6 +86,10 @@ class Solid final : public model::Substructure {
   const Eigen::VectorXd& potentials_at(const Eigen::Ref<const Eigen::VectorXd>& x, std::span<const double> u) const;
   /// Gradient of the enthalpy by the potentials at a configuration: minus the charges that the supply has put there.
   Eigen::VectorXd charge_rows(const Eigen::Ref<const Eigen::VectorXd>& x, const Eigen::VectorXd& phi) const;
+  /// Charge that a unit of potential brings onto the conductor of these nodes at a configuration, where all other given
+  /// potentials and charges stay as they are: with all of them given potentials, a diagonal entry of Maxwell's matrix.
+  /// `floats`: its charge is given, not its potential. NaN if the potentials are not found.
+  double capacitance(const Eigen::Ref<const Eigen::VectorXd>& x, const std::vector<int>& nodes, bool floats) const;
 
   // Substructure
   model::PartLimits add_part_forces(const model::IntervalPoint& at, model::IntervalForces& out) const override;

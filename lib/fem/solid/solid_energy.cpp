@@ -1,5 +1,6 @@
 /// Energies and work of a solid, and what makes a configuration inadmissible.
 #include <algorithm>
+#include <limits>
 
 #include "base/text.hpp"
 #include "fem/solid/solid.hpp"
@@ -68,6 +69,24 @@ void Solid::energies(const model::NodePoint& at, std::span<model::Energy> out) c
   for (int cell = 0; cell < elements_.n_cells(); ++cell) {
     out[0].elastic += V_[cell] * dilation(cell, volumes.J[cell]).U;
   }
+}
+
+double Solid::capacitance(const Eigen::Ref<const Eigen::VectorXd>& x, const std::vector<int>& nodes,
+                          bool floats) const {
+  // Every electric law is quadratic in the field: the response to one volt, or one unit of charge, is that to any.
+  Eigen::VectorXd phi = Eigen::VectorXd::Zero(elements_.n_nodes());
+  Eigen::VectorXd charge = phi;
+  if (floats) {
+    charge[nodes.front()] = 1.0;
+  } else {
+    for (const int node : nodes) phi[node] = 1.0;
+  }
+  if (potential_solver_ && !potential_solver_->solve(x, charge, phi)) return std::numeric_limits<double>::quiet_NaN();
+  if (floats) return 1.0 / phi[nodes.front()];
+  const Eigen::VectorXd rows = charge_rows(x, phi);
+  double sum = 0.0;
+  for (const int node : nodes) sum -= rows[node];
+  return sum;
 }
 
 std::string Solid::inadmissible(const Eigen::VectorXd& q) const {

@@ -67,9 +67,15 @@ const Eigen::VectorXd& SolidRecords::potentials(const model::NodeView& at) const
 }
 
 double SolidRecords::charge(const std::vector<int>& nodes, const model::NodeView& at) const {
-  if (charges_.is_old(at)) charges_.value = -solid_.charge_rows(solid_.positions(at.q), potentials(at));
+  if (charges_.is_old(at)) {
+    const Eigen::VectorXd& phi = potentials(at);
+    charges_.value.setZero(phi.size());
+    solid_.elements().forces({.x = solid_.positions(at.q).data(), .phi = phi.data()},
+                             {.charge = charges_.value.data()});
+  }
+  // The gradient of the enthalpy by the potentials is minus the charge.
   double sum = 0.0;
-  for (const int node : nodes) sum += charges_.value[node];
+  for (const int node : nodes) sum -= charges_.value[node];
   return sum;
 }
 

@@ -9,6 +9,7 @@
 
 #include "fem/solid/solid.hpp"
 #include "model/observable.hpp"
+#include "model/supply.hpp"
 
 namespace muldi::fem {
 
@@ -38,6 +39,9 @@ class SolidRecords {
   model::FieldHistory::Field field(FieldQuantity quantity, const std::string& folder) const;
   /// Charge and potential of all electrodes, `electrodes/<solid>.<electrode>/...`.
   std::vector<model::Observable> electrodes() const;
+  /// Gives the model what is wanted of the conductors: `electrodes/<solid>.<electrode>/capacitance` and the energies;
+  /// of other prescribed potentials and of surface charges only what counts for the sums.
+  void add_electric(const model::ElectricRecord& wanted, model::Model& model) const;
 
   /// Weighted sum over nodes: a vector, or one entry for the potential.
   Eigen::Vector3d value(PointQuantity quantity, const WeightedNodes& where, const model::NodeView& at) const;
@@ -75,6 +79,9 @@ class SolidRecords {
   };
 
   void write(FieldQuantity quantity, const model::NodeView& at, std::span<double> out) const;
+  model::Terminal terminal_of(const std::vector<int>& nodes) const;
+  model::Terminal terminal_of(const FloatingElectrode& electrode) const;
+  model::Terminal terminal_of(const SurfaceCharge& charge) const;
   model::Observable electrode(const std::string& name, const std::vector<int>& nodes, bool charge) const;
 
   const Solid& solid_;

@@ -76,7 +76,8 @@ double FittedCurve::rms(const Eigen::MatrixXd& values) const {
 
 Calibration calibrate(const scene::CalibrateStudy& study, const scene::SceneText& scene, const CalibrateCalls& calls) {
   const Parameters parameters(study, scene);
-  std::vector<ReferenceCurve> curves = read_references(study, scene.read({}).units);
+  const base::UnitSystem units = scene.read({}).units;
+  std::vector<ReferenceCurve> curves = read_references(study, units);
   const Predictor predictor(parameters, curves);
   Residuals residuals(predictor, curves, parameters.size());
   if (residuals.n_rows() < static_cast<Eigen::Index>(parameters.size())) {
@@ -86,6 +87,7 @@ Calibration calibrate(const scene::CalibrateStudy& study, const scene::SceneText
   }
   Calibration result{.names = parameters.names(),
                      .units = parameters.units(),
+                     .time_unit = units.time(),
                      .lower = parameters.lower(),
                      .upper = parameters.upper(),
                      .start = parameters.start(),

@@ -30,6 +30,7 @@ struct FittedCurve {
 struct Calibration {
   std::vector<std::string> names = {};
   std::vector<std::string> units = {};
+  std::string time_unit = {};  ///< of the scene
   Eigen::VectorXd lower = {};
   Eigen::VectorXd upper = {};
   Eigen::VectorXd start = {};

@@ -73,9 +73,11 @@ void record_calibration(const Calibration& calibration, const std::string& study
     const auto n = static_cast<std::size_t>(reference.at.size());
     const results::Shape shape{n, static_cast<std::size_t>(reference.values.cols())};
     const std::vector<double> at(reference.at.data(), reference.at.data() + reference.at.size());
-    recorder.declare_fixed(
-        {.path = group + axis_name(reference.axis), .shape = {n}, .unit = "1", .doc = "of the reference"},
-        std::span<const double>(at));
+    recorder.declare_fixed({.path = group + axis_name(reference.axis),
+                            .shape = {n},
+                            .unit = reference.axis == AxisKind::time ? calibration.time_unit : "1",
+                            .doc = "of the reference"},
+                           std::span<const double>(at));
     const auto put = [&](const std::string& name, const Eigen::MatrixXd& values, const std::string& doc) {
       const std::vector<double> rows = rows_of(values);
       recorder.declare_fixed({.path = group + name, .shape = shape, .unit = unit_of(reference.unit), .doc = doc},

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "control/transcription.hpp"
+#include "multibody/joint_coordinate.hpp"
 #include "support/control_problems.hpp"
 #include "support/linkages.hpp"
 
@@ -182,6 +183,24 @@ TEST(Nlp, DerivativesOfForcesOnLoopClosingJoints) {
   at.problem.final.coordinates.clear();
   at.problem.final.equilibrium = {20.0};
   expect_clean(at.problem, test::feasibility(), resting_guess(at.problem, 5.0));
+}
+
+TEST(Nlp, DerivativesOfCoordinatesOfLoopClosingJoints) {
+  ControlCase at(linkage_driven_at_its_cut());
+  at.set_horizon(3, 5.0);
+  at.seek_plain(1e3);
+  at.start_at_rest();
+  const multibody::Joint& joint = test::manifold_of(*at.model).tree().joints[3];
+  const auto cut = std::make_shared<multibody::JointCoordinate>(joint, joint.pattern.motions[0]);
+  const Trajectory guess = resting_guess(at.problem, 5.0);
+  Eigen::VectorXd q(at.problem.model.n_q());
+  at.problem.model.manifold->configuration(guess.x[0], q);
+  at.problem.final.coordinates.push_back({.name = "joints.rocker", .cut = cut, .value = cut->value(q) - 0.1});
+  at.problem.limits.coordinates.push_back({.name = "joints.rocker", .cut = cut, .lower = -3.0, .upper = 3.0});
+  expect_clean(at.problem,
+               {{0.2, Tracking{.coordinates = {{.cut = cut, .wanted = 0.3}}}},
+                {0.3, Terminal{.coordinates = {{.cut = cut, .wanted = 0.4}}}}},
+               guess);
 }
 
 TEST(Nlp, DerivativesOfLimitsOnTurns) {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "support/figure.hpp"
-#include "support/solid_system.hpp"
+#include "support/solid_cubes.hpp"
 #include "variational/stepper.hpp"
 
 namespace muldi::fem {
@@ -17,7 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double mu = 0.233;
+constexpr double mu = test::cube_mu;
 
 /// Deflection of the tip of a clamped block 10 x 2 x 2 under a dead load.
 double deflection(double nu, Formulation formulation) {
@@ -184,7 +184,6 @@ InfSup inf_sup(const test::FemPatch& patch, const test::Where& held) {
   return result;
 }
 
-bool on_wall(const Vector3d& X) { return X.minCoeff() < 1e-9 || X.maxCoeff() > 1.0 - 1e-9; }
 bool on_wall_but_top(const Vector3d& X) {
   return X[2] < 1e-9 || std::min(X[0], X[1]) < 1e-9 || std::max(X[0], X[1]) > 1.0 - 1e-9;
 }
@@ -200,9 +199,9 @@ TEST(SolidVolume, InfSupValuesAreThoseOfTheElement) {
   // distorted mesh has none.
   for (const int n : {4, 6}) {
     const std::string cells = test::short_number(n) + "^3 cells, ";
-    const InfSup closed = inf_sup(regular_cube(n), on_wall);
+    const InfSup closed = inf_sup(regular_cube(n), test::on_wall);
     const InfSup open = inf_sup(regular_cube(n), on_wall_but_top);
-    const InfSup distorted = inf_sup(test::cube_of(n), on_wall);
+    const InfSup distorted = inf_sup(test::cube_of(n), test::on_wall);
     const InfSup open_distorted = inf_sup(test::cube_of(n), on_wall_but_top);
     EXPECT_EQ(closed.zeros, 3 * n - 1);
     EXPECT_EQ(open.zeros, n);
@@ -220,7 +219,7 @@ TEST(SolidVolume, InfSupValuesAreThoseOfTheElement) {
 /// whose pressure is hydrostatic: over the largest.
 double hydrostatic_error(int n) {
   test::SolidSystem system = test::solid_of(test::cube_of(n));
-  for (int i = 0; i < 3; ++i) system.hold(on_wall, i);
+  for (int i = 0; i < 3; ++i) system.hold(test::on_wall, i);
   // So little weight that nothing moves but to first order.
   const double weight = 1e-9;
   system.fill(test::rubber(mu, 0.0, Formulation::incompressible), mu, Formulation::incompressible);

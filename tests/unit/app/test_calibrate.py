@@ -82,6 +82,18 @@ class Calibrate(ProgramTest):
         self.assertAlmostEqual(self.value("materials.silicone.electric.relative_permittivity"), 3.7, places=9)
         self.assertAlmostEqual(self.value("materials.silicone.elastic.young"), 0.7, places=9)
 
+    def test_the_end_factor_is_found_again_beside_the_stiffness_where_lengths_differ(self):
+        scene = SCENES / "revolute_joint_lumped.yaml"
+        longer = ["--set", "dynamics.duration=100 ms", "--set", "muscles.lower.rest_length=80"]
+        true = ["--set", "muscles.upper.lumped.end_factor=0.3", "--set", "muscles.lower.lumped.end_factor=0.3"]
+        self.program("run", scene, "-o", "r.h5", *longer, *true)
+        fit = "  muscles.*.lumped.end_factor: {min: 0, max: 2}\n  materials.silicone.elastic.young: {min: 0.5 MPa, max: 1 MPa, start: 0.8}\n"
+        study = self.write("f.yaml", f"calibrate: 1\nscene: {scene}\nreference: r.h5\nfit:\n{fit}compare:\n  joints.hinge.coordinate:\n")
+        self.program("calibrate", study, "-o", "c.yaml", "--results", "fit.h5", *longer)
+        # The derivation at LumpedModel::stiffness_of_ends: 1 + k d/Z with two lengths Z.
+        self.assertAlmostEqual(self.value("muscles.*.lumped.end_factor"), 0.3, delta=1e-6)
+        self.assertAlmostEqual(self.value("materials.silicone.elastic.young"), 0.7, delta=1e-6)
+
     def test_mistakes_are_told_with_place_and_cure(self):
         shutil.copy(STUDIES / "joint_fe.csv", self.folder)
         study = self.write(

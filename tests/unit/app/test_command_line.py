@@ -208,7 +208,7 @@ class UnreadableRecords(ProgramTest):
         self.refused(None, "No such file or directory")
 
     def test_empty(self):
-        self.refused(b"", "not an HDF5 file")
+        self.refused(b"", "it is empty: no result, or its run was killed before its start was recorded")
 
     def test_noise(self):
         self.refused(bytes(range(256)) * 16, "not an HDF5 file")

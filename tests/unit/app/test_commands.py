@@ -14,14 +14,18 @@ import unittest
 from program import PROGRAM, ROOT, TIME_LIMIT, ProgramTest
 
 # What is run elsewhere: by CI itself, by a test of its own.
-ELSEWHERE = (r"git clone ", r"tools/test\b", r"tools/(bench|golden|results|gallery|layout)\b")
+ELSEWHERE = (r"git clone ", r"tools/test\b", r"tools/(bench|golden|results|gallery|layout|fuzz)\b", r"muldi-sim run .*revolute_joint_twin.yaml -o fe.h5")
+# Pages with commands in lines of their own, and the number of those that are run here; of RESULTS.md tools/results runs all.
+PAGES = {"README.md": 15, "scenes/README.md": 2, "lib/HOW_TO_ADD.md": 2, "scenes/SWEEPS.md": 4, "scenes/CALIBRATION.md": 7, "tests/fuzz/README.md": 0}
+RUN_BY_TOOLS = {"scenes/RESULTS.md"}
 COMMAND = re.compile(r"    (tools/\w+ |muldi-sim |git clone )")
 
 
 def commands_of(text):
     """(command, what it says) in order; comments behind commands are left out."""
     found, said = [], None
-    for line in re.sub(r"```.*?```", "", text, flags=re.DOTALL).splitlines():
+    text = re.sub(r"```.*?```", "", text, flags=re.DOTALL)
+    for line in re.sub(r" *\\\n +", " ", text).splitlines():
         if COMMAND.match(line):
             said = []
             found.append((re.sub(r" +#.*", "", line.strip()), said))
@@ -67,8 +71,8 @@ class Commands(ProgramTest):
             self.assertTrue(free or where == at, f"{command}: more stands above '{line}':\n{said}")
             at, free = where + 1, expected[0] == "..."
 
-    def run_page(self, page, number):
-        ran = 0
+    def run_page(self, page):
+        ran, number = 0, PAGES[page]
         for command, expected in commands_of((ROOT / page).read_text(encoding="utf-8")):
             if any(re.match(pattern, command) for pattern in ELSEWHERE):
                 continue
@@ -81,23 +85,34 @@ class Commands(ProgramTest):
         self.assertGreaterEqual(ran, number, f"{page} shows fewer commands than it did")
 
     def test_of_the_readme(self):
-        self.run_page("README.md", 15)
+        self.run_page("README.md")
         made = {path.name for path in self.folder.iterdir()}
         self.assertLessEqual(
             {"trunk.html", "elephant_trunk_lumped.svg", "elephant_trunk_lumped.xdmf", "trunk.png", "overlay.pdf", "dt4.svg", "my.yaml", "my.h5"}, made
         )
 
     def test_of_the_gallery_and_the_layout_of_results(self):
-        self.run_page("scenes/README.md", 2)
+        self.run_page("scenes/README.md")
         programs = re.findall(r"```python\n(.*?)```", (ROOT / "schemas" / "RESULTS_LAYOUT.md").read_text(), re.DOTALL)
         self.assertEqual(len(programs), 1)
         said = subprocess.run(["/usr/bin/python3", "-c", programs[0]], cwd=self.folder, capture_output=True, text=True, check=True)
         self.assertTrue(said.stdout.startswith("completed 10000.0 "), said.stdout)
 
     def test_of_how_to_add_write_what_is_committed(self):
-        self.run_page("lib/HOW_TO_ADD.md", 2)
+        self.run_page("lib/HOW_TO_ADD.md")
         for name in ("scene.schema.json", "SCENE.md"):
             self.assertEqual((self.folder / "schemas" / name).read_text(), (ROOT / "schemas" / name).read_text())
+
+    def test_of_the_pages_about_studies(self):
+        self.run_page("scenes/SWEEPS.md")
+        self.run_page("scenes/CALIBRATION.md")
+        made = {path.name for path in self.folder.iterdir()}
+        self.assertLessEqual({"joint_sweep.csv", "joint_sweep.svg", "trunk_lhs.html", "joint_fit.svg", "joint_fit.html", "troels.yaml"}, made)
+
+    def test_no_page_is_left_out(self):
+        pages = [path for folder in ("scenes", "lib", "schemas", "tests", "app", "tools") for path in (ROOT / folder).rglob("*.md")]
+        with_commands = {str(path.relative_to(ROOT)) for path in [ROOT / "README.md", *pages] if commands_of(path.read_text(encoding="utf-8"))}
+        self.assertEqual(with_commands, set(PAGES) | RUN_BY_TOOLS)
 
 
 class Verbs(ProgramTest):
@@ -112,7 +127,7 @@ class Verbs(ProgramTest):
 
     def test_named_in_the_texts_of_pages_exist(self):
         helped = self.program("--help").stdout
-        for page in ("README.md", "scenes/README.md", "lib/THEORY.md", "lib/HOW_TO_ADD.md", "schemas/SCENE.md", "schemas/RESULTS_LAYOUT.md"):
+        for page in ("README.md", "scenes/README.md", "scenes/SWEEPS.md", "scenes/CALIBRATION.md", "lib/THEORY.md", "lib/HOW_TO_ADD.md", "schemas/SCENE.md", "schemas/RESULTS_LAYOUT.md"):
             for verb in re.findall(r"`(?:muldi-sim|tools/run) ([a-z]+)\b[^`]*`", (ROOT / page).read_text(encoding="utf-8")):
                 self.assertRegex(helped, rf"(?m)^  {verb}\b", page)
 

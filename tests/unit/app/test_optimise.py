@@ -29,6 +29,14 @@ class Optimise(ProgramTest):
         self.assertLess(abs(values(output, "solver/residual")).max(), 1e-6)
         self.program("info", "a.h5")
 
+    def test_says_where_a_replay_stopped(self):
+        # Coarse muscles under a field that turns their cells inside out.
+        fields = "agonist: 150 kV/mm, antagonist: 0"
+        replay = f"optimal_control.replay={{step: 1 ms, muscles: fe, then: {{duration: 100 ms, controls: {{{fields}}}}}}}"
+        layers = [f"muscles.{name}.fe.layers=3" for name in ("upper", "lower")]
+        done = self.program("optimise", JOINT, "-o", "a.h5", *options([*layers, replay]), code=3)
+        self.assertRegex(done.stdout, r"\nthe replay stopped at t = 2\d\d ms; up to there\nreplay less optimum +largest +at the end +afterwards\n")
+
     def test_has_an_american_name(self):
         self.program("optimize", SLIDER, "-o", "a.h5")
 

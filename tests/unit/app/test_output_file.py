@@ -3,12 +3,14 @@
 
 import os
 import resource
+import subprocess
 import unittest
 
 from program import SCENES, ProgramTest, attribute, data_sets, values
 
 PENDULUM = SCENES / "pendulum.yaml"
 TRUNK = SCENES / "elephant_trunk_lumped.yaml"
+SHORT = ["--set", "dynamics.duration=50 ms"]
 
 
 class Names(ProgramTest):
@@ -77,6 +79,31 @@ class Unwritable(ProgramTest):
                 message = self.message("run", PENDULUM, "-o", path, *option, code=4)
                 self.assertEqual(message, f"error: cannot write '{path}': not a regular file")
 
+    def test_pipes_and_devices_are_never_written(self):
+        for name in ("a.h5", "a.svg", "a.html", "a.yaml", "a.sh", "a.xdmf"):
+            os.mkfifo(self.folder / name)
+        self.program("run", PENDULUM, "-o", "b.h5", "--no-paraview", *SHORT)
+        fit = SCENES / "studies" / "kofod_permittivity.yaml"
+        sweep = SCENES / "studies" / "joint_sweep.yaml"
+        for path, *arguments in (("a.svg", "plot", "b.h5", "-o"), ("a.html", "report", "b.h5", "-o"), ("a.yaml", "new", "--force", "-o"),
+                                 ("a.yaml", "calibrate", fit, "--force", "-o"), ("a.h5", "calibrate", fit, "--force", "--results"),
+                                 ("a.h5", "sweep", sweep, "--force", "-o"), ("a.sh", "sweep", sweep, "--jobs", 2, "--force", "--slurm"),
+                                 ("a.h5", "run", PENDULUM, "--force", "-o"), ("/dev/full", "new", "--force", "-o")):
+            with self.subTest(path=path, verb=arguments[0]):
+                self.assertEqual(self.message(*arguments, path, code=4), f"error: cannot write '{path}': not a regular file")
+        self.program("run", PENDULUM, "-o", "c.h5", *SHORT)
+        os.rename(self.folder / "a.xdmf", self.folder / "c.xdmf.pipe")
+        (self.folder / "c.xdmf").unlink()
+        os.rename(self.folder / "c.xdmf.pipe", self.folder / "c.xdmf")
+        self.assertEqual(self.message("paraview", "c.h5", code=4), "error: cannot write 'c.xdmf': not a regular file")
+
+    def test_pipes_and_devices_are_no_results(self):
+        os.mkfifo(self.folder / "a.h5")
+        for path in ("a.h5", "/dev/zero"):
+            for arguments in (["info", path], ["compare", path, path], ["plot", path], ["report", path], ["paraview", path], ["run", PENDULUM, "--resume", path]):
+                with self.subTest(path=path, verb=arguments[0]):
+                    self.assertEqual(self.message(*arguments, code=2), f"error: cannot read '{path}': not a regular file")
+
 
 class FullDisk(ProgramTest):
     """A limit of the file size stands for the full disk."""
@@ -109,6 +136,29 @@ class FullDisk(ProgramTest):
                 self.program("run", TRUNK, "--resume", "a.h5")
                 self.assert_same_bits("whole.h5", "a.h5")
                 output.unlink()
+
+    def test_of_a_real_small_disk_leaves_what_fits(self):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16m", "tmpfs", disk], capture_output=True, check=False)
+        if mounted.returncode != 0:
+            self.skipTest("only root may mount a file system")
+        self.addCleanup(lambda: subprocess.run(["umount", disk], check=True))
+        run = ["run", TRUNK, "--set", "dynamics.duration=4 s"]
+        self.program(*run, "-o", "whole.h5")
+        whole = data_sets(self.folder / "whole.h5")
+        filler, output = disk / "filler", disk / "a.h5"
+        filler.write_bytes(bytes((16 << 20) - (self.folder / "whole.h5").stat().st_size * 7 // 10))
+        done = self.program(*run, "-o", output, code=4)
+        self.assertRegex(done.stderr, r"^error: cannot write '.*a.h5'.*: No space left on device\n$")
+        self.assertIn(attribute(output, "status"), ("write_error", "running"))
+        cut = data_sets(output)
+        self.assertLess(cut["time"][0][0], whole["time"][0][0])
+        for name, (_, _, content) in cut.items():
+            self.assertTrue(whole[name][2].startswith(content), name)
+        filler.unlink()
+        self.program(*run, "--resume", output)
+        self.assert_same_bits("whole.h5", output)
 
 
 if __name__ == "__main__":

@@ -12,6 +12,15 @@ RUNS = {
     "closed and redundant": ("four_bar.yaml", ["dynamics.duration=20 s"]),
     "closed, springs, a row in 7 steps": ("slider_crank.yaml", ["dynamics.duration=21 s", "record.every=7"]),
     "isolated actuator": ("membrane_lumped.yaml", ["dynamics.duration=3000", "record.every=5"]),
+    "accounts of the supply": (
+        "energy_harvester.yaml",
+        [
+            "dynamics.duration=30 s",
+            "record.every=3",
+            "controls.supply.layer_voltage={sine: {amplitude: 300, frequency: 0.02}}",
+            "materials.silicone.viscous={model: kelvin_voigt, viscosity: 0.05}",
+        ],
+    ),
     "free tree, a row in 30 steps": ("tree.yaml", ["dynamics.duration=20 s", "record.every=30"]),
 }
 
@@ -24,13 +33,24 @@ class Interrupted(BrokenRuns):
                 whole = self.folder / "whole.h5"
                 self.program("run", *arguments, "-o", whole)
                 broken = self.folder / "broken.h5"
-                codes = self.run_with_breaks(arguments, broken, [0.0, 0.01, 0.02, 0.05])
-                self.assertGreaterEqual(codes.count(130), 2, "two interrupts came in time")
-                self.assertLessEqual(set(codes), {0, 130})
-                self.assertEqual(attribute(broken, "status"), "completed")
-                self.assert_same_bits(whole, broken)
+                # Interrupts that come too late prove nothing: then again.
+                interrupts = 0
+                while interrupts < 2:
+                    codes = self.run_with_breaks(arguments, broken, [0.0, 0.01, 0.02, 0.05])
+                    interrupts += codes.count(130)
+                    self.assertLessEqual(set(codes), {0, 130})
+                    self.assertEqual(attribute(broken, "status"), "completed")
+                    self.assert_same_bits(whole, broken)
+                    broken.unlink()
                 whole.unlink()
-                broken.unlink()
+
+    def break_once(self, arguments, output):
+        """Runs it with an interrupt early on, again where that came too late, and goes on to the end."""
+        codes = []
+        while codes != [130, 0]:
+            output.unlink(missing_ok=True)
+            codes = self.run_with_breaks(arguments, output, [0.05])
+            self.assertIn(codes, ([130, 0], [0]))
 
     def test_an_interrupted_file_says_so_and_ends_with_a_row_of_that_moment(self):
         output = self.folder / "a.h5"
@@ -51,8 +71,7 @@ class Interrupted(BrokenRuns):
         arguments = [SCENES / "revolute_joint_lumped.yaml", *options(["statics.steps=100000", "dynamics.duration=10"])]
         whole, broken = self.folder / "whole.h5", self.folder / "broken.h5"
         self.program("run", *arguments, "-o", whole)
-        codes = self.run_with_breaks(arguments, broken, [0.05])
-        self.assertEqual(codes, [130, 0])
+        self.break_once(arguments, broken)
         self.assert_same_bits(whole, broken)
 
     def test_statics_alone_broken_off_are_done_again(self):
@@ -60,7 +79,7 @@ class Interrupted(BrokenRuns):
         arguments = [scene, *options(["statics.steps=100000"])]
         whole, broken = self.folder / "whole.h5", self.folder / "broken.h5"
         self.program("run", *arguments, "-o", whole)
-        self.assertEqual(self.run_with_breaks(arguments, broken, [0.05]), [130, 0])
+        self.break_once(arguments, broken)
         self.assert_same_bits(whole, broken)
 
     def test_a_longer_duration_goes_on_like_the_longer_run(self):

@@ -93,6 +93,7 @@ class GoesOn(BrokenRuns):
         "mean dilatation": ["materials.m.elastic.poisson=0.48"],
         "locking": ["materials.m.elastic.poisson=0.48", "solids.cube.formulation=displacement"],
         "steps of the voltage": ["controls.supply.potential={steps: [[0, 20 kV], [3, 5 kV], [6.5, 18 kV], [12, 0]]}"],
+        "accounts of the sources": ["record.electric=[capacitance, stored_energy, supplied_energy]"],
     }
 
     def test_an_interrupted_run_goes_on_with_the_same_bits(self):

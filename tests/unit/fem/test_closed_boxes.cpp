@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "statics/equilibrium.hpp"
-#include "support/solid_system.hpp"
+#include "support/solid_cubes.hpp"
 #include "variational/stepper.hpp"
 
 namespace muldi::fem {
@@ -12,17 +12,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double mu = 0.233;
-
-bool on_wall(const Vector3d& X) { return X.minCoeff() < 1e-9 || X.maxCoeff() > 1.0 - 1e-9; }
+constexpr double mu = test::cube_mu;
 
 bool on_side(const Vector3d& X) { return X.head<2>().minCoeff() < 1e-9 || X.head<2>().maxCoeff() > 1.0 - 1e-9; }
 
 /// A cube of 4^3 cells with all walls held; `force` of a node inside by its position, for the value 1.
 test::SolidSystem closed_box(Formulation formulation, const std::function<Vector3d(const Vector3d&)>& force) {
   test::SolidSystem system = test::solid_box({4, 4, 4}, {0, 0, 0}, {1, 1, 1});
-  for (int i = 0; i < 3; ++i) system.hold(on_wall, i);
-  DeadLoad load{.nodes = system.nodes([](const Vector3d& X) { return !on_wall(X); }), .unit = {}, .value = {}};
+  for (int i = 0; i < 3; ++i) system.hold(test::on_wall, i);
+  DeadLoad load{.nodes = system.nodes([](const Vector3d& X) { return !test::on_wall(X); }), .unit = {}, .value = {}};
   load.value = system.control(1.0);
   for (const int node : load.nodes) load.unit.push_back(force(system.node(node)) / 64.0);
   system.solid.dead_loads.push_back(load);
@@ -64,7 +62,7 @@ TEST(ClosedBox, AnOpenSideLeavesThePatternsAcrossIt) {
   // two families and the constant one do not.
   test::SolidSystem system = test::solid_box({4, 4, 4}, {0, 0, 0}, {1, 1, 1});
   for (int i = 0; i < 3; ++i) {
-    system.hold([](const Vector3d& X) { return on_wall(X) && !(X[2] > 1 - 1e-9 && !on_side(X)); }, i);
+    system.hold([](const Vector3d& X) { return test::on_wall(X) && !(X[2] > 1 - 1e-9 && !on_side(X)); }, i);
   }
   system.fill(test::rubber(mu, 0.0, Formulation::incompressible), mu, Formulation::incompressible);
   const auto model = test::make_model(system);
@@ -89,7 +87,7 @@ TEST(ClosedBox, RollersAndDistortedCellsHaveNoSuchPatterns) {
   rollers.fill(test::rubber(mu, 0.0, Formulation::incompressible), mu, Formulation::incompressible);
   EXPECT_EQ(test::solid_in(*test::make_model(rollers)).filter().n_patterns(), 1);
   test::SolidSystem distorted = test::solid_of(test::cube_of(4));
-  for (int i = 0; i < 3; ++i) distorted.hold(on_wall, i);
+  for (int i = 0; i < 3; ++i) distorted.hold(test::on_wall, i);
   distorted.fill(test::rubber(mu, 0.0, Formulation::incompressible), mu, Formulation::incompressible);
   const auto model = test::make_model(distorted);
   EXPECT_EQ(test::solid_in(*model).filter().n_patterns(), 1);

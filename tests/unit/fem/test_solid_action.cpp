@@ -1,12 +1,11 @@
 /// The exact derivative of a solid's equations, and what Newton's method does with it.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 
 #include "fem/solid/solid_action.hpp"
 #include "statics/equilibrium.hpp"
-#include "support/solid_system.hpp"
+#include "support/solid_cubes.hpp"
 #include "variational/stepper.hpp"
 
 namespace muldi::fem {
@@ -15,42 +14,14 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double mu = 0.233;
-
-/// Outer faces of a box mesh in a plane X_component = value, counterclockwise from outside.
-std::vector<std::array<int, 4>> faces_in(const test::SolidSystem& system, int component, double value) {
-  constexpr std::array<std::array<int, 4>, 6> faces = {
-      {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 4, 7, 3}, {1, 2, 6, 5}}};
-  std::vector<std::array<int, 4>> found;
-  for (const auto& cell : system.solid.cells) {
-    for (const auto& face : faces) {
-      std::array<int, 4> nodes{};
-      bool all = true;
-      for (std::size_t a = 0; a < 4; ++a) {
-        nodes[a] = cell[static_cast<std::size_t>(face[a])];
-        all = all && std::abs(system.node(nodes[a])[component] - value) < 1e-9;
-      }
-      if (all) found.push_back(nodes);
-    }
-  }
-  return found;
-}
-
-Material viscous_dielectric(Formulation formulation) {
-  Material material = test::rubber(mu, 10.0, formulation);
-  material.electric = IdealDielectric{.permittivity = 3.7 * test::eps0_si};
-  material.viscous = KelvinVoigt{.viscosity = 0.5};
-  return material;
-}
+constexpr double mu = test::cube_mu;
 
 /// A distorted cube between electrodes, with a pressure on an open surface.
 test::SolidSystem everything(Formulation formulation) {
-  test::SolidSystem system = test::solid_of(test::cube_of(2));
+  test::SolidSystem system = test::charged_cube(test::plane(2, 1.0), 2e4);
   system.hold_lower_faces();
-  system.set_potential(test::plane(2, 0.0), {});
-  system.set_potential(test::plane(2, 1.0), {.constant = 2e4});
-  system.solid.pressures.push_back({.faces = faces_in(system, 0, 1.0), .value = {.constant = 0.1}});
-  system.fill(viscous_dielectric(formulation), mu, formulation);
+  system.solid.pressures.push_back({.faces = test::faces_in(system, 0, 1.0), .value = {.constant = 0.1}});
+  system.fill(test::viscous_dielectric(formulation, 10.0, 0.5), mu, formulation);
   return system;
 }
 
@@ -214,7 +185,7 @@ TEST(SolidAction, ACubeUnderHydrostaticPressureIsStable) {
     test::SolidSystem system = test::solid_box({2, 2, 2}, {0, 0, 0}, {1, 1, 1});
     system.hold_lower_faces();
     for (int i = 0; i < 3; ++i) {
-      system.solid.pressures.push_back({.faces = faces_in(system, i, 1.0), .value = {.constant = pressure}});
+      system.solid.pressures.push_back({.faces = test::faces_in(system, i, 1.0), .value = {.constant = pressure}});
     }
     system.fill(test::rubber(mu, lambda, formulation), mu, formulation);
     const auto model = test::make_model(system);
@@ -235,7 +206,7 @@ TEST(SolidAction, ACubeUnderHydrostaticPressureIsStable) {
 TEST(SolidAction, NewtonEndsQuadraticallyUnderAPressureOnAnOpenSurface) {
   test::SolidSystem system = test::solid_box({4, 1, 1}, {0, 0, 0}, {4, 1, 1});
   for (int i = 0; i < 3; ++i) system.hold(test::plane(0, 0.0), i);
-  system.solid.pressures.push_back({.faces = faces_in(system, 2, 1.0), .value = {.constant = 0.003}});
+  system.solid.pressures.push_back({.faces = test::faces_in(system, 2, 1.0), .value = {.constant = 0.003}});
   system.fill(test::rubber(mu, 10.0, Formulation::mean_dilatation), mu, Formulation::mean_dilatation);
   const auto model = test::make_model(system);
   statics::StaticState state = test::static_start(*model);

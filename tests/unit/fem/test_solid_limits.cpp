@@ -5,7 +5,8 @@
 #include <numbers>
 
 #include "statics/sweep.hpp"
-#include "support/solid_system.hpp"
+#include "support/figure.hpp"
+#include "support/solid_cubes.hpp"
 #include "variational/stepper.hpp"
 
 namespace muldi::fem {
@@ -13,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double mu = 0.233;
+constexpr double mu = test::cube_mu;
 
 double lambda_of(double nu) { return 2.0 * mu * nu / (1.0 - 2.0 * nu); }
 
@@ -103,6 +104,8 @@ TEST(SolidLimits, ALoadTooLargeForOneStepLeavesTheStateAndIsReported) {
       statics::EquilibriumSolver(*model, {}).solve(state, std::vector<double>{1e3});
   EXPECT_FALSE(report.converged);
   EXPECT_TRUE(state.q == start);
+  test::record_figure("10", "state after a refused step into inverted cells, difference from its start (mm)",
+                      (state.q - start).lpNorm<Eigen::Infinity>(), 0.0);
 
   statics::Sweep sweep(*model, {0.0}, {1.0}, {.from = 1e3, .to = 2e3, .steps = 2});
   const statics::SweepResult result = sweep.run(state, {});
@@ -168,11 +171,9 @@ TEST(SolidLimits, ABlowTooHardForTheStepInvertsCells) {
   }
 }
 
-bool on_wall(const Vector3d& X) { return X.minCoeff() < 1e-9 || X.maxCoeff() > 1.0 - 1e-9; }
-
 /// A cube with all its walls held, pushed inside.
 test::SolidSystem clamped(test::SolidSystem system, double load) {
-  for (int i = 0; i < 3; ++i) system.hold(on_wall, i);
+  for (int i = 0; i < 3; ++i) system.hold(test::on_wall, i);
   const std::vector<int> inside =
       system.nodes([](const Vector3d& X) { return (X.array() - 0.5).matrix().norm() < 0.15; });
   system.solid.dead_loads.push_back({.nodes = {inside.at(0)}, .unit = {{1, 2, 3}}, .value = {.constant = load}});
@@ -191,7 +192,7 @@ void expect_finite_pressures(const test::SolidSystem& system, double load) {
   EXPECT_LT(solid.pressures(rest.y).lpNorm<Eigen::Infinity>(), 600.0 * load);
   EXPECT_LT((solid.volumes_at(rest.q).J.array() - 1.0).abs().maxCoeff(), 1e-12);
   solver.linearise(rest, {});
-  for (const int n : system.nodes([](const Vector3d& X) { return !on_wall(X); })) {
+  for (const int n : system.nodes([](const Vector3d& X) { return !test::on_wall(X); })) {
     EXPECT_LT(solver.force().segment<3>(3 * n).norm(), 1e-6 * load);
   }
 }

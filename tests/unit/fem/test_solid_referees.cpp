@@ -7,7 +7,7 @@
 #include <iostream>
 #include <string>
 
-#include "support/solid_system.hpp"
+#include "support/solid_cubes.hpp"
 #include "variational/stepper.hpp"
 
 namespace muldi::fem {
@@ -17,22 +17,16 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double mu = 0.233;
+constexpr double mu = test::cube_mu;
 
-Material viscous_dielectric(Formulation formulation) {
-  Material material = test::rubber(mu, 20.0, formulation);
-  material.electric = IdealDielectric{.permittivity = 3.7 * test::eps0_si};
-  material.viscous = KelvinVoigt{.viscosity = 0.05};
-  return material;
-}
+/// Of the cubes here.
+Material material_of(Formulation formulation) { return test::viscous_dielectric(formulation, 20.0, 0.05); }
 
 /// A distorted cube on symmetry planes with 30 kV between its ends.
-test::SolidSystem charged_cube(Formulation formulation) {
-  test::SolidSystem system = test::solid_of(test::cube_of(2));
+test::SolidSystem cube_on_symmetry_planes(Formulation formulation) {
+  test::SolidSystem system = test::charged_cube(test::on_electrode_with_edge, 3e4);
   system.hold_lower_faces();
-  system.set_potential(test::plane(2, 0.0), {});
-  system.set_potential([](const Vector3d& X) { return X[2] > 1 - 1e-9 && X[0] < 0.8; }, {.constant = 3e4});
-  system.fill(viscous_dielectric(formulation), mu, formulation);
+  system.fill(material_of(formulation), mu, formulation);
   return system;
 }
 
@@ -142,7 +136,7 @@ class FiveFields {
 TEST(SolidReferees, TheReducedIncompressibleFormulationIsThatOfFiveFields) {
   const double dt = 5e-3;
   for (const Formulation formulation : {Formulation::incompressible, Formulation::incompressible_direct}) {
-    const auto model = test::make_model(charged_cube(formulation));
+    const auto model = test::make_model(cube_on_symmetry_planes(formulation));
     const Solid& solid = test::solid_in(*model);
     variational::State state = test::moving_state(*model, dt);
     FiveFields referee(*model, dt, state);
@@ -167,15 +161,13 @@ TEST(SolidReferees, TheReducedIncompressibleFormulationIsThatOfFiveFields) {
 
 /// A free, charged, spinning cube of distorted cells, turned and shifted, with a boost.
 VectorXd free_motion(Formulation formulation, const Matrix3d& R, const Vector3d& shift, const Vector3d& boost) {
-  test::SolidSystem system = test::solid_of(test::cube_of(2));
-  system.set_potential(test::plane(2, 0.0), {});
-  system.set_potential([](const Vector3d& X) { return X[2] > 1 - 1e-9 && X[0] < 0.8; }, {.constant = 3e4});
+  test::SolidSystem system = test::charged_cube(test::on_electrode_with_edge, 3e4);
   VectorXd v = test::spin(system, {0.3, -0.2, 0.5});
   for (Eigen::Index k = 0; k < v.size(); k += 3) {
     system.solid.X.segment<3>(k) = R * system.solid.X.segment<3>(k) + shift;
     v.segment<3>(k) = R * v.segment<3>(k) + boost;
   }
-  system.fill(viscous_dielectric(formulation), mu, formulation);
+  system.fill(material_of(formulation), mu, formulation);
   const auto model = test::make_model(system);
   const double dt = 2e-2;
   variational::State state = test::moving_state(*model, dt, v);
@@ -210,8 +202,6 @@ test::SolidSystem pressed_bar(Formulation formulation, Load load) {
   constexpr double pressure = 0.005;
   test::SolidSystem system = test::solid_box({4, 1, 1}, {0, 0, 0}, {4, 1, 1});
   for (int i = 0; i < 3; ++i) system.hold(test::plane(0, 0.0), i);
-  std::vector<std::array<int, 4>> faces;
-  for (int i = 10; i < 14; ++i) faces.push_back({i, i + 1, i + 6, i + 5});
   DeadLoad dead{.nodes = system.nodes(test::plane(2, 1.0)), .unit = {}, .value = {.constant = pressure}};
   EXPECT_EQ(dead.nodes.size(), 10U);
   for (const int node : dead.nodes) {
@@ -219,7 +209,7 @@ test::SolidSystem pressed_bar(Formulation formulation, Load load) {
     dead.unit.push_back({0, 0, x < 1e-9 || x > 4 - 1e-9 ? -0.25 : -0.5});
   }
   if (load == Load::follows) {
-    system.solid.pressures.push_back({.faces = faces, .value = {.constant = pressure}});
+    system.solid.pressures.push_back({.faces = test::faces_in(system, 2, 1.0), .value = {.constant = pressure}});
   } else {
     system.solid.dead_loads.push_back(dead);
   }

@@ -7,6 +7,7 @@
 #include "base/parallel.hpp"
 #include "fem/solid/solid_factor.hpp"
 #include "statics/equilibrium.hpp"
+#include "support/figure.hpp"
 #include "support/solid_system.hpp"
 #include "variational/stepper.hpp"
 
@@ -148,6 +149,8 @@ TEST(SolverChoice, IterationsGiveTheSameBitsForAnyNumberOfThreads) {
     }
     base::set_threads(1);
     EXPECT_TRUE(q[0] == q[1]) << legacy;
+    test::record_figure("16", "solid by iterations on 1 and on 3 threads, largest difference (mm)",
+                        (q[0] - q[1]).lpNorm<Eigen::Infinity>(), 0.0);
   }
 }
 

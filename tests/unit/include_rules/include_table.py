@@ -42,7 +42,7 @@ LIBRARIES = [
     {"name": "yaml-cpp", "headers": r"yaml-cpp/", "targets": r"yaml-cpp(::[\w-]+)?", "pairs": 1, "folders": ["scene"]},
     {"name": "muParser", "headers": r"muParser", "targets": r"PkgConfig::muparser|muparser::\w+", "pairs": 1,
      "folders": ["base", "math", "scene"]},
-    {"name": "HDF5", "headers": r"(hdf5(_hl)?\.h|H5\w*\.h|hdf5/)", "targets": r"(HDF5::HDF5|hdf5::[\w-]+)", "pairs": 1, "folders": ["results"]},
+    {"name": "HDF5", "headers": r"(hdf5(_hl)?\.h|H5\w*\.h|hdf5/)", "targets": r"(HDF5::HDF5|hdf5::[\w-]+)", "pairs": 3, "folders": ["results"]},
     {"name": "Ipopt", "headers": r"(coin/)?Ip\w+\.hpp", "targets": r"([Ii]popt::\w+|PkgConfig::ipopt)", "pairs": 1, "folders": ["control"]},
     {"name": "CLI11", "headers": r"CLI/", "targets": r"CLI11::CLI11", "pairs": 1, "folders": ["app"]},
     {"name": "the operating system", "headers": r"(unistd|fcntl|dlfcn|signal|poll|termios|sched|execinfo|malloc)\.h|sys/\w+\.h|linux/", "targets": r"dl|Threads::Threads",

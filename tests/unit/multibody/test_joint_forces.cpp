@@ -27,7 +27,7 @@ TEST(JointForce, AddsSpringDamperAndDrive) {
   const JointForce force =
       law({.stiffness = 2.0, .rest = 0.5, .damping = 3.0, .control = 0, .control_factor = 4.0, .constant = 1.0});
   const std::array<double, 1> u{0.25};
-  const JointForce::Response r = force.respond(1.5, 0.1, u);
+  const JointForce::Response r = force.respond({1.5, 0.1}, u);
   EXPECT_NEAR(r.force, -2.0 - 0.3 + 1.0 + 1.0, 1e-15);
   EXPECT_EQ(r.by_position, -2.0);
   EXPECT_EQ(r.by_rate, -3.0);
@@ -38,11 +38,11 @@ TEST(JointForce, AddsSpringDamperAndDrive) {
 
 TEST(JointForce, StopsPushBackOutsideOnly) {
   const JointForce force = law({.stops = {.lower = -1.0, .upper = 2.0, .stiffness = 10.0, .damping = 0.5}});
-  EXPECT_EQ(force.respond(0.0, 5.0, {}).force, 0.0);
+  EXPECT_EQ(force.respond({0.0, 5.0}, {}).force, 0.0);
   EXPECT_EQ(force.potential(2.0), 0.0);
-  EXPECT_NEAR(force.respond(2.1, 0.0, {}).force, -1.0, 1e-14);
-  EXPECT_NEAR(force.respond(-1.2, 0.0, {}).force, 2.0, 1e-14);
-  EXPECT_NEAR(force.respond(2.1, 0.2, {}).force, -1.0 - 0.1, 1e-14);
+  EXPECT_NEAR(force.respond({2.1, 0.0}, {}).force, -1.0, 1e-14);
+  EXPECT_NEAR(force.respond({-1.2, 0.0}, {}).force, 2.0, 1e-14);
+  EXPECT_NEAR(force.respond({2.1, 0.2}, {}).force, -1.0 - 0.1, 1e-14);
   EXPECT_NEAR(force.potential(2.1), 0.05, 1e-15);
   EXPECT_NEAR(force.potential(-1.2), 0.2, 1e-15);
 }

@@ -30,7 +30,7 @@ Row joints_at(const model::Model& model, const variational::State& state, const 
     if (node.step > step) return;
     for (const auto& observable : all) {
       VectorXd& values = row[observable.path];
-      observable.evaluate(test::view_of(node), {values.data(), static_cast<std::size_t>(values.size())});
+      observable.evaluate(variational::view_of(node), {values.data(), static_cast<std::size_t>(values.size())});
     }
   });
   EXPECT_EQ(run.result.status, variational::Status::completed) << run.result.sentence;

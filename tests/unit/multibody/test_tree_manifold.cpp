@@ -64,10 +64,12 @@ TEST(TreeManifold, MeasuresTheLargestTurnOfABody) {
     turned.poses[1].orientation = math::rotation_about({3.0, 1.0, -1.0}, angle) * system.poses[1].orientation;
     const auto other = test::make_model(turned);
     const TreeManifold& manifold = test::manifold_of(*model);
-    const double measured =
-        manifold.largest_rotation(test::configuration_at(manifold, manifold.reference()),
-                                  test::configuration_at(*other->manifold, other->manifold->reference()));
-    EXPECT_NEAR(measured, angle, 1e-14 + 1e-13 * angle);
+    const VectorXd from = test::configuration_at(manifold, manifold.reference());
+    const model::Turn turn =
+        manifold.largest_turn(from, test::configuration_at(*other->manifold, other->manifold->reference()));
+    EXPECT_NEAR(turn.angle, angle, 1e-14 + 1e-13 * angle);
+    EXPECT_EQ(turn.node, 1);
+    EXPECT_EQ(manifold.largest_turn(from, from).node, -1);
   }
 }
 

@@ -50,6 +50,26 @@ TEST(LumpedModel, ReplacementsHoldForTheModel) {
   EXPECT_EQ(model.element(given()).shear_modulus, 0.3);
 }
 
+TEST(LumpedModel, EndFactorStiffensByDiameterOverLength) {
+  LumpedModel model;
+  EXPECT_EQ(model.end_factor, 0.0);
+  EXPECT_EQ(model.stiffness_of_ends(given()), 1.0);
+  model.end_factor = 0.5;
+  const LumpedDea element = model.element(given());
+  // 1 + k d/Z with k = 1/2, d = 10, Z = 100.
+  EXPECT_DOUBLE_EQ(element.shear_modulus, 1.05 * 0.7 / 3);
+  EXPECT_DOUBLE_EQ(element.viscosity, 1.05 * 10.0);
+  // Forces of the field and the mass stay: without stretch the ends disturb nothing.
+  const LumpedDea free = LumpedModel{}.element(given());
+  EXPECT_EQ(element.potential_z(1.0, 3e4), free.potential_z(1.0, 3e4));
+  EXPECT_EQ(element.mass(), free.mass());
+  // A bar that is shorter by k d is stiffer by 1/(1 - k d/Z): the same to the first order of d/Z.
+  MuscleGiven shorter = given();
+  shorter.length -= 0.5 * 10.0;
+  const double same = LumpedModel{}.element(shorter).potential_zz(1.0, 0.0);
+  EXPECT_NEAR(element.potential_zz(1.0, 0.0) / same, 1.0 - 0.05 * 0.05, 1e-14);
+}
+
 TEST(LumpedModel, RefusesTwoElasticConstants) {
   LumpedModel model;
   EXPECT_FALSE(model.fault().has_value());

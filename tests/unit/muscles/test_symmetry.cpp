@@ -33,7 +33,11 @@ TYPED_TEST(ElementSymmetry, ForcesTurnWithARigidMotion) {
       }
       const auto energy = muscles::as_energy(element);
       EXPECT_NEAR(energy.kinetic(moved), energy.kinetic(x), 1e-12 * (1.0 + energy.kinetic(x)));
-      EXPECT_NEAR(energy.elastic(moved), energy.elastic(x), 1e-12 * (1.0 + energy.elastic(x)));
+      // Near rest large parts of the energy cancel: its round-off is that of a state far from there.
+      auto doubled = x;
+      doubled.a1 = x.a2 + 2.0 * (x.a1 - x.a2);
+      EXPECT_NEAR(energy.elastic(moved), energy.elastic(x),
+                  1e-12 * (1.0 + energy.elastic(x) + energy.elastic(doubled)));
     }
   }
 }

@@ -1,10 +1,14 @@
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 
 #include <csignal>
 #include <fstream>
+#include <future>
 #include <numeric>
+#include <thread>
 
 #include "recording.hpp"
 
@@ -181,6 +185,20 @@ TEST(Hdf5Recorder, RefusesAFileThatIsBeingWritten) {
             expected);
   first.close({.status = "completed"});
   expect_rows(ResultFile(path), 3);
+}
+
+TEST(Hdf5Recorder, WaitsForAReaderThatTriesToOpenTheFile) {
+  const Scratch scratch;
+  const std::string path = scratch / "a.h5";
+  record(path, 3);
+  const int reader = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  ASSERT_EQ(::flock(reader, LOCK_SH), 0);
+  const auto attempt = std::async(std::launch::async, [reader] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    ::close(reader);
+  });
+  Hdf5Recorder recorder({.path = path, .mode = Output::Mode::resume});
+  EXPECT_TRUE(recorder.resume_point());
 }
 
 TEST(Hdf5Recorder, SaysWhyItCannotWrite) {

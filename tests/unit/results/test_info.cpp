@@ -21,7 +21,8 @@ TEST(Info, TellsStatusSizesFinalValuesAndTimes) {
     recorder.close({.status = "no_convergence", .where = "residual 1e3", .time = 4.5});
   }
   const auto bytes = std::filesystem::file_size(path);
-  const std::string size = std::to_string(bytes / 1000) + "." + std::to_string((bytes % 1000 + 50) / 100);
+  const auto tenths = (bytes + 50) / 100;
+  const std::string size = std::to_string(tenths / 10) + "." + std::to_string(tenths % 10);
   EXPECT_EQ(info(path), path +
                             "\n"
                             "  status         no_convergence at 4.5 ms: residual 1e3\n"

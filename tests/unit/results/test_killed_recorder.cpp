@@ -3,6 +3,7 @@
 #include <csignal>
 
 #include "recording.hpp"
+#include "results/superblock.hpp"
 
 namespace muldi::results {
 namespace {
@@ -22,8 +23,7 @@ pid_t record_forever(const std::string& path) {
     }
   }
   for (int tries = 0; tries < 1000; ++tries) {
-    const auto superblock = read_superblock(path);
-    if (superblock && !superblock->marked) break;
+    if (read_superblock(path)) break;
     ::usleep(1000);
   }
   return child;

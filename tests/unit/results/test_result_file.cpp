@@ -52,7 +52,9 @@ TEST(ResultFile, RefusesWhatIsNoResult) {
   std::ofstream(scratch / "text.h5") << "hello, this is no HDF5 file";
   EXPECT_EQ(open(scratch / "text.h5"), "error: cannot read '" + (scratch / "text.h5") + "': not an HDF5 file");
   std::ofstream(scratch / "empty.h5") << "";
-  EXPECT_EQ(open(scratch / "empty.h5"), "error: cannot read '" + (scratch / "empty.h5") + "': not an HDF5 file");
+  EXPECT_EQ(open(scratch / "empty.h5"), "error: cannot read '" + (scratch / "empty.h5") +
+                                            "': it is empty: no result, or its run was killed before its start "
+                                            "was recorded");
 }
 
 TEST(ResultFile, RefusesATruncatedFile) {

@@ -116,7 +116,7 @@ TEST(Muscles, ModelHasItsDefaultsWithoutOptions) {
                                    "[0, 0, 0]}, section: {shape: round, diameter: 1}, material: silicone}}\n",
                                {"controls={}"});
   EXPECT_EQ(std::get<std::optional<muscles::LumpedModel>>(scene.muscles[0].value.options), muscles::LumpedModel{});
-  EXPECT_NE(resolved_text(scene).find("lumped: {inertia: consistent}"), std::string::npos);
+  EXPECT_NE(resolved_text(scene).find("lumped: {inertia: consistent, end_factor: 0}"), std::string::npos);
 }
 
 }  // namespace

@@ -32,6 +32,27 @@ TEST(Override, TakesWholeYamlValues) {
   EXPECT_EQ(scene.bodies.find("leg")->value.mass, 2.0);
 }
 
+TEST(Override, LeadsIntoNoEntryThatTheSceneLacks) {
+  const std::string driven = motion + "controls: {agonist: {field: 1}, antagonist: {field: 0}}\n";
+  EXPECT_EQ(errors_of(driven, {"controls.agonst.field=3"}),
+            "--set controls.agonst.field=3: error: controls.agonst: the scene has no control 'agonst' (did you mean "
+            "'agonist'?); a new one is set as a whole: controls.agonst={...}");
+  EXPECT_EQ(errors_of(driven, {"bodies.amr.mass=3", "controls.pump.field=3"}),
+            "--set bodies.amr.mass=3: error: bodies.amr: the scene has no body 'amr' (did you mean 'arm'?); a new one "
+            "is set as a whole: bodies.amr={...}\n"
+            "--set controls.pump.field=3: error: controls.pump: the scene has no control 'pump' (known: agonist, "
+            "antagonist); a new one is set as a whole: controls.pump={...}");
+  // A misspelt section is an unknown key.
+  EXPECT_EQ(errors_of(driven, {"contrls.agonist.field=3"}),
+            "--set contrls.agonist.field=3: error: contrls: unknown key (did you mean 'controls'?)");
+}
+
+TEST(Override, MakesAnEntryThatIsSetAsAWhole) {
+  const Scene scene =
+      scene_of(motion + "controls: {agonist: {field: 1}}\n", {"controls.supply={field: 2}", "controls.supply.field=3"});
+  EXPECT_EQ(scene.controls.find("supply")->value.value.at(0), 3.0);
+}
+
 TEST(Override, LaterOnesWin) {
   EXPECT_EQ(scene_of(motion, {"dynamics.step=2", "dynamics.step=5"}).dynamics->step, 5.0);
 }

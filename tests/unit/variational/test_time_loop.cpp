@@ -1,7 +1,10 @@
 /// The loop around the steps: what it records, when it stops, the ledger, going on from a checkpoint.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "multibody/registry.hpp"
+#include "support/figure.hpp"
 #include "support/linkages.hpp"
 #include "support/systems.hpp"
 #include "support/trajectory.hpp"
@@ -126,7 +129,8 @@ TEST(TimeLoop, RunsAThinRodWhoseJointForbidsItsOwnAxis) {
   EXPECT_EQ(run.result.status, Status::completed);
   const auto thick = test::make_model(test::pendulum());
   const test::Run expected = test::run(*thick, test::state_at_rest(*thick), {.dt = 5.0, .steps = 100});
-  EXPECT_NEAR(run.state.x[0], expected.state.x[0], 1e-10);
+  test::record_figure("30", "rod without inertia about its own axis against one with, angle after 100 steps (rad)",
+                      std::abs(run.state.x[0] - expected.state.x[0]), 1e-10);
 }
 
 TEST(TimeLoop, WarnsOnceOfLargeRotations) {
