@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <system_error>
 
 #include "app/exit_code.hpp"
 #include "app/look.hpp"
@@ -217,6 +218,11 @@ base::Verbosity verbosity_of(const CommandLine& line) {
   return line.verbose == 1 ? base::Verbosity::verbose : base::Verbosity::normal;
 }
 
+int out_of_memory() {
+  base::log_error("out of memory: `muldi-sim validate` estimates what a scene takes; take fewer cells or bodies");
+  return app::ExitCode::environment_failed;
+}
+
 int guarded(const CLI::App& program, CommandLine& line) {
   try {
     const int code = dispatch(program, line);
@@ -230,9 +236,11 @@ int guarded(const CLI::App& program, CommandLine& line) {
     base::log_error(error.what());
     return app::ExitCode::environment_failed;
   } catch (const std::bad_alloc&) {
-    base::log_error("out of memory: `muldi-sim validate` estimates what a scene takes; take fewer cells or bodies");
-    return app::ExitCode::environment_failed;
+    return out_of_memory();
   } catch (const std::exception& error) {
+    // A thread that cannot be made for want of room for its stack.
+    const auto* failure = dynamic_cast<const std::system_error*>(&error);
+    if (failure != nullptr && failure->code() == std::errc::resource_unavailable_try_again) return out_of_memory();
     base::log_error(std::string("internal error, please report it: ") + error.what());
     return 70;  // EX_SOFTWARE: a bug, none of the documented codes
   }

@@ -221,7 +221,7 @@ bool write_staged(const OpenFile& file) {
   if (file.order == Order::highest_first) {
     std::ranges::reverse(runs);
   } else if (!runs.empty() && runs.front().first->first == 0) {
-    std::ranges::rotate(runs, runs.begin() + 1);
+    std::rotate(runs.begin(), runs.begin() + 1, runs.end());
   }
   const bool good = std::ranges::all_of(runs, [&](const auto& run) { return write_run(file, run.first, run.second); });
   if (good) set_size_if_possible(file, file.end_of_addresses);
@@ -300,6 +300,7 @@ herr_t get_handle(H5FD_t* file, hid_t, void** handle) {
   return 0;
 }
 
+// NOLINTNEXTLINE(readability-function-size): the parameters are those of H5FD_class_t.
 herr_t read(H5FD_t* handle, H5FD_mem_t, hid_t, haddr_t at, std::size_t size, void* buffer) {
   OpenFile& file = own(handle);
   auto* bytes = static_cast<unsigned char*>(buffer);
@@ -309,6 +310,7 @@ herr_t read(H5FD_t* handle, H5FD_mem_t, hid_t, haddr_t at, std::size_t size, voi
   return file.heaps.accepts(at, bytes, size) ? 0 : fail("damaged: a text is longer than the place where it is kept");
 }
 
+// NOLINTNEXTLINE(readability-function-size): as read.
 herr_t write(H5FD_t* handle, H5FD_mem_t type, hid_t, haddr_t at, std::size_t size, const void* buffer) {
   OpenFile& file = own(handle);
   if (!file.writes) return 0;

@@ -67,7 +67,7 @@ class OutOfMemory(ProgramTest):
         self.assertRegex(self.within(98), r"error: solids\.cube: a mesh of 27000 cells takes [\d.]+ GiB, more than the 0\.0957 GiB of this machine: take fewer cells$")
 
     def test_is_told(self):
-        self.assertEqual(self.within(300), "error: out of memory: `muldi-sim validate` estimates what a scene takes; take fewer cells or bodies")
+        self.assertEqual(self.within(360), "error: out of memory: `muldi-sim validate` estimates what a scene takes; take fewer cells or bodies")
 
 
 if __name__ == "__main__":
