@@ -85,6 +85,7 @@ void add_variable(const math::Jet2<2>& slope, int variable, math::Jet2<n>& to) {
 
 /// Forces affine in every e_c^2: g = g(0) + sum_c e_c^2 (g(reference_c) - g(0))/reference_c^2, whose derivatives by
 /// e_c^2 are finite at 0.
+// NOLINTBEGIN(readability-function-size): where it is expanded takes four of the six.
 template <AxialElement Element>
 AxialForces<2 + Element::n_controls> squared_axial_forces(const Element& element, double z, double zd,
                                                           const Controls<double, Element::n_controls>& e,
@@ -112,6 +113,7 @@ AxialForces<2 + Element::n_controls> squared_axial_forces(const Element& element
   }
   return sum;
 }
+// NOLINTEND(readability-function-size)
 
 /// The vectors that the expansion starts from.
 struct RelativeState {
