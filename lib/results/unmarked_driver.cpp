@@ -11,6 +11,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <memory>
 #include <new>
 #include <vector>
 
@@ -239,8 +240,11 @@ H5FD_t* open(const char* name, unsigned flags, hid_t access, haddr_t) {
     if (descriptor >= 0) ::close(descriptor);
     return nullptr;
   }
-  auto* file = new (std::nothrow) OpenFile;
-  if (file == nullptr) {
+  std::unique_ptr<OpenFile> file;
+  try {
+    file = std::make_unique<OpenFile>();
+  } catch (const std::bad_alloc&) {
+    fail("out of memory");
     ::close(descriptor);
     return nullptr;
   }
@@ -255,7 +259,7 @@ H5FD_t* open(const char* name, unsigned flags, hid_t access, haddr_t) {
     file->superblock = *bytes;
     file->claimed = std::min(end_of_file(*bytes), static_cast<std::uint64_t>(status.st_size));
   }
-  return file;
+  return file.release();
 }
 
 herr_t close(H5FD_t* handle) {
