@@ -141,7 +141,7 @@ class Solid final : public model::Substructure {
   SolidUnknowns unknowns_;
   Ties ties_;
   SolidLoads loads_;
-  Eigen::VectorXd V_;
+  const Eigen::VectorXd& V_;  // of elements_
   double size_ = 0.0;
   double shear_modulus_ = 0.0;
   double mass_ = 0.0;
