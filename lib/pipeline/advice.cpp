@@ -23,8 +23,9 @@ Advice on_no_convergence(Task task) {
               "Newton's iteration found no next state: too much happens within one step, or the motion is not "
               "determined there",
           .remedy =
-              "half the dynamics.step; ramps for controls that jump; more solver.max_iterations; for components "
-              "of your own `muldi-sim check --derivatives`"};
+              "half the dynamics.step (for cells that keep their volume below h sqrt(density/stress), h their shortest "
+              "edge); ramps for controls that jump; more solver.max_iterations; for components of your own `muldi-sim "
+              "check --derivatives`"};
 }
 
 Advice on_step_too_large(Task task) {
@@ -60,12 +61,13 @@ Advice advice_on(variational::Status status, Task task) {
                   "a lower field, or a ramp instead of a jump (a sudden field pulls in at 94 % of the static "
                   "limit); more viscosity; a smaller dynamics.step if the field is moderate"};
     case Status::inverted_element:
-      return {.meaning =
-                  "a cell of the mesh was pressed through itself, by a field beyond pull-in, a load, or a step "
-                  "that is too large",
-              .remedy =
-                  "a smaller dynamics.step, or a ramp instead of a jump; a lower field or load; finer or better "
-                  "shaped cells there"};
+      return {
+          .meaning =
+              "a cell of the mesh was pressed through itself, by a field beyond pull-in, a load, or a step "
+              "that is too large",
+          .remedy =
+              "a smaller dynamics.step (for cells that keep their volume below h sqrt(density/stress), h their "
+              "shortest edge), or a ramp instead of a jump; a lower field or load; finer or better shaped cells there"};
     case Status::rank_change:
       return {.meaning = "at a change point a closed mechanism may go on in two ways, and its joints do not say which",
               .remedy =

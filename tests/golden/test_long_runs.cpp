@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "base/text.hpp"
 #include "scene_run.hpp"
@@ -74,6 +75,41 @@ TEST(ElephantTrunkFeLong, SwingsForTenSecondsAboutItsEquilibrium) {
   for (int joint = 1; joint <= 6; ++joint) {
     const auto angle = run.rows(base::format("joints/joint{}/coordinate", joint));
     EXPECT_NEAR(angle.rightCols(100).mean() / degree, 6.942, 0.15) << joint;
+  }
+}
+
+TEST(RevoluteJointTwinLong, MusclesThatPullInEndTheLoadStepsWhereTheArcLengthTurns) {
+  const SceneRun run("revolute_joint_twin",
+                     {"dynamics.duration=1 ms", "statics={control: agonist, from: 40 kV/mm, to: 60 kV/mm, steps: 2}"});
+  EXPECT_EQ(run.outcome().status, variational::Status::loss_of_equilibrium);
+  const double critical = 59101.858;  // recorded, by continuation: arc_length from 0 to 120 kV/mm
+  EXPECT_LT(run.attribute("statics", "critical_load_above"), critical);
+  EXPECT_GT(run.attribute("statics", "critical_load_below"), critical);
+  // The last good state is on record, and is the last.
+  EXPECT_EQ(run.value("statics/load"), run.attribute("statics", "critical_load_above"));
+  EXPECT_NEAR(run.value("statics/joints/hinge/coordinate") / degree, 61.7, 0.5);  // of the curve at its limit
+}
+
+/// Kinetic energy at the end over that at the beginning, of a small motion about the equilibrium; infinite if the run
+/// fails. `share`: of the step h sqrt(rho/s) with the height of a layer and the Maxwell stress eps E^2.
+double growth(double field, double density, double share) {
+  const double stress = 3.7 * 8.8542e-12 * field * field;
+  const double step = 1e-4 * std::floor(1e4 * share * 100.0 / 23.0 * std::sqrt(density / stress));
+  const SceneRun run(
+      "revolute_joint_twin",
+      {"initial={from: static_equilibrium, momentum: {hinge: 1}}", "materials.silicone.viscous.viscosity=0.01",
+       base::format("materials.silicone.density={}", density), base::format("controls.agonist.field={}", field),
+       "statics.steps=4", "record.every=1",
+       base::format("dynamics={{duration: {:.6f}, step: {:.6f}}}", 120 * step, step)});
+  const auto kinetic = run.rows("energy/kinetic");
+  return run.outcome().completed() ? kinetic.rightCols<1>()[0] / kinetic(0, 0) : HUGE_VAL;
+}
+
+/// lib/THEORY.md, 9: pressures act at nodes in time, the other stresses between them.
+TEST(RevoluteJointTwinLong, StressedCellsOfConstantVolumeBoundTheStep) {
+  for (const auto& [field, density] : {std::pair(3e4, 1e-3), std::pair(1.5e4, 1e-3), std::pair(3e4, 4e-3)}) {
+    EXPECT_LT(growth(field, density, 0.8), 1.0) << field << ' ' << density;
+    EXPECT_GT(growth(field, density, 1.25), 1.0) << field << ' ' << density;
   }
 }
 

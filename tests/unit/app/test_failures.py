@@ -15,14 +15,15 @@ WHY = {
     "\n  try: a lower field, or a ramp instead of a jump (a sudden field pulls in at 94 % of the static limit); more viscosity; a smaller "
     "dynamics.step if the field is moderate",
     "inverted_element": "\n  why: a cell of the mesh was pressed through itself, by a field beyond pull-in, a load, or a step that is too large"
-    "\n  try: a smaller dynamics.step, or a ramp instead of a jump; a lower field or load; finer or better shaped cells there",
+    "\n  try: a smaller dynamics.step (for cells that keep their volume below h sqrt(density/stress), h their shortest edge), or a ramp "
+    "instead of a jump; a lower field or load; finer or better shaped cells there",
     "step_too_large": "\n  why: the midpoint of two attitudes that far apart is no attitude: the step cannot follow the rotation"
     "\n  try: a dynamics.step in which no body turns by more than about 0.1 rad, or 0.5 at the most",
     "explicit": "\n  why: beyond this step the explicit integrator multiplies every error, and the motion blows up"
     "\n  try: a dynamics.step below the stable one, coarser cells where they are smallest, or integrator: midpoint",
     "no_convergence": "\n  why: Newton's iteration found no next state: too much happens within one step, or the motion is not determined there"
-    "\n  try: half the dynamics.step; ramps for controls that jump; more solver.max_iterations; for components of your own `muldi-sim check "
-    "--derivatives`",
+    "\n  try: half the dynamics.step (for cells that keep their volume below h sqrt(density/stress), h their shortest edge); ramps for "
+    "controls that jump; more solver.max_iterations; for components of your own `muldi-sim check --derivatives`",
     "statics": "\n  why: no equilibrium was found near the last one, or the system can move without any force"
     "\n  try: more statics.steps, or continuation: arc_length; hold what can move freely by joints, springs or muscles",
     "rank_change": "\n  why: at a change point a closed mechanism may go on in two ways, and its joints do not say which"
