@@ -40,13 +40,25 @@ EquilibriumRows::EquilibriumRows(results::Recorder& recorder, const scene::Scene
       zero_v_(Eigen::VectorXd::Zero(built.manifold->n_v())),
       constraint_force_(zero_q_) {}
 
-void EquilibriumRows::write(const statics::SweepPoint& point) {
+void EquilibriumRows::look_at(const statics::SweepPoint& point) {
   last_.load = point.load;
   last_.x = point.state.x;
   last_.q = point.q;
   last_.multipliers = point.state.multipliers;
   last_.y = point.y;
   last_.u.assign(point.u.begin(), point.u.end());
+}
+
+std::string EquilibriumRows::breach(const statics::SweepPoint& point) {
+  if (built_.model->guards.empty()) return {};
+  look_at(point);
+  model::NodeView look = last_view();
+  look.serial = looks_--;
+  return built_.model->breach(look);
+}
+
+void EquilibriumRows::write(const statics::SweepPoint& point) {
+  look_at(point);
   const std::span<const double> x(last_.x.data(), static_cast<std::size_t>(last_.x.size()));
   built_.model->energies({.x = x, .q = last_.q, .v = zero_q_, .u = last_.u}, parts_);
   constraint_force_ = -point.force;
@@ -154,17 +166,37 @@ std::string StaticsRun::loss_sentence(const statics::SweepResult& result) {
   return text;
 }
 
+std::string StaticsRun::breach_sentence(const Breach& breach) const {
+  const double first = breach.before.value_or(breach.at);
+  const std::string loads =
+      first == breach.at ? base::format("{:.10g}", first) : base::format("{:.10g} to {:.10g}", first, breach.at);
+  if (!scene_.statics->control) return base::format("at the load {} {}", loads, breach.sentence);
+  const auto index = static_cast<std::size_t>(scene_.controls.index(scene_.statics->control->name));
+  return base::format("with control '{}' at {} {} {}", scene_.statics->control->name, loads,
+                      scene_.units.unit_name(built_.model->controls[index].unit), breach.sentence);
+}
+
 Outcome StaticsRun::run(RunContext& context) {
   const scene::Statics& said = *scene_.statics;
   long row = 0;
-  const statics::SweepResult result = sweep_->run(state_, {.record =
-                                                               [&](const statics::SweepPoint& point) {
-                                                                 rows_.write(point);
-                                                                 if (context.progress) {
-                                                                   context.progress(row++, said.steps, point.load);
-                                                                 }
-                                                               },
-                                                           .interrupted = context.interrupted});
+  Breach breach;
+  statics::SweepCallbacks callbacks;
+  callbacks.record = [&](const statics::SweepPoint& point) {
+    if (!breach.sentence.empty()) return;
+    breach.at = point.load;
+    breach.sentence = rows_.breach(point);
+    if (!breach.sentence.empty()) return;
+    breach.before = point.load;
+    rows_.write(point);
+    if (context.progress) context.progress(row++, said.steps, point.load);
+  };
+  callbacks.interrupted = [&] { return !breach.sentence.empty() || (context.interrupted && context.interrupted()); };
+  const statics::SweepResult result = sweep_->run(state_, callbacks);
+  if (!breach.sentence.empty()) {
+    return {.status = variational::Status::breakdown,
+            .sentence = breach_sentence(breach),
+            .time = std::numeric_limits<double>::quiet_NaN()};
+  }
   using End = statics::SweepResult::End;
   if (result.end == End::loss_of_equilibrium) {
     recorder_.set_attribute("statics", "critical_load_above", result.last_good);

@@ -23,6 +23,8 @@ StaticLoads static_loads(const scene::Scene& scene, const build::BuiltModel& bui
 class EquilibriumRows {
  public:
   EquilibriumRows(results::Recorder& recorder, const scene::Scene& scene, const build::BuiltModel& built);
+  /// What the guards of the model say of an equilibrium; empty where they are silent.
+  std::string breach(const statics::SweepPoint& point);
   void write(const statics::SweepPoint& point);
 
   /// A muscle and its stretch.
@@ -34,6 +36,7 @@ class EquilibriumRows {
   Stretched least_stretched();
 
  private:
+  void look_at(const statics::SweepPoint& point);
   model::NodeView last_view() const;
 
   const build::BuiltModel& built_;
@@ -65,6 +68,13 @@ class StaticsRun {
  private:
   /// Where the equilibrium was lost, as the user speaks of it.
   std::string loss_sentence(const statics::SweepResult& result);
+  /// Where a guard of the model stopped the curve.
+  struct Breach {
+    std::string sentence = {};          ///< empty: nowhere
+    std::optional<double> before = {};  ///< the load of the last row
+    double at = 0.0;                    ///< the load that was refused
+  };
+  std::string breach_sentence(const Breach& breach) const;
   /// Limit points and branches that the arc length has passed: attributes and messages.
   void report_changes(const std::vector<statics::BranchChange>& changes, const RunContext& context);
   void report_critical(const std::vector<statics::CriticalPoint>& points, const RunContext& context);
