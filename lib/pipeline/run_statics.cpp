@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "fem/solid/least_stretch.hpp"
 #include "pipeline/initial_state.hpp"
 
 namespace muldi::pipeline {
@@ -103,9 +104,17 @@ EquilibriumRows::Stretched EquilibriumRows::least_stretched() {
     if (!observable.path.starts_with("muscles/") || !observable.path.ends_with("/stretch")) continue;
     double stretch = 0.0;
     observable.evaluate(view, {&stretch, 1});
-    if (!least.muscle.empty() && stretch >= least.stretch) continue;
+    if (!least.where.empty() && stretch >= least.stretch) continue;
     constexpr std::size_t around = 16;  // of the name: the folder and the quantity
-    least = {.muscle = observable.path.substr(8, observable.path.size() - around), .stretch = stretch};
+    least = {.where = "muscle '" + observable.path.substr(8, observable.path.size() - around) + "'",
+             .stretch = stretch};
+  }
+  if (!least.where.empty()) return least;
+  for (const fem::Solid* solid : built_.solids) {
+    const fem::CellStretch cell = fem::least_stretch(solid->elements(), solid->positions(last_.q));
+    if (!least.where.empty() && cell.stretch >= least.stretch) continue;
+    least = {.where = solid->place_of_cell(cell.cell) + " of solid '" + solid->data().name + "'",
+             .stretch = cell.stretch};
   }
   return least;
 }
@@ -119,6 +128,13 @@ void StaticsRun::prepare() {
   sweep_.emplace(*built_.model, std::move(loads.fixed), std::move(loads.direction), loads.options);
 }
 
+std::string StaticsRun::load_text(const std::string& numbers) const {
+  if (!scene_.statics->control) return numbers;
+  const auto index = static_cast<std::size_t>(scene_.controls.index(scene_.statics->control->name));
+  return base::format("{} {} of '{}'", numbers, scene_.units.unit_name(built_.model->controls[index].unit),
+                      scene_.statics->control->name);
+}
+
 void StaticsRun::report_critical(const std::vector<statics::CriticalPoint>& points, const RunContext& context) {
   using Kind = statics::CriticalPoint::Kind;
   for (const Kind kind : {Kind::limit, Kind::branch}) {
@@ -128,10 +144,15 @@ void StaticsRun::report_critical(const std::vector<statics::CriticalPoint>& poin
       const std::string name = kind == Kind::limit ? "limit_load" : "branch_load";
       recorder_.set_attribute("statics", ++number == 1 ? name : name + "_" + std::to_string(number), point.load);
       if (!context.warn) continue;
-      const std::string load = base::format("{:.10g}", point.load);
-      context.warn(kind == Kind::limit
-                       ? "statics: the load turns at the limit point " + load
-                       : "statics: the stability changes at the load " + load + ", where another branch crosses");
+      const std::string load = load_text(base::format("{:.10g}", point.load));
+      context.warn(
+          kind == Kind::limit
+              ? "statics: the load turns at the limit point " + load +
+                    ": loaded beyond it, the system jumps (pull-in, snap-through); dynamics shows where to, and "
+                    "statics/stable marks the rows of this curve that are stable"
+              : "statics: the stability changes at the load " + load +
+                    ", where another branch crosses (buckling): a small force or offset to one side in the scene "
+                    "leads onto it, as every real system has one");
     }
   }
 }
@@ -143,11 +164,11 @@ void StaticsRun::report_changes(const std::vector<statics::BranchChange>& change
     recorder_.set_attribute("statics", "jump_load_before" + count, change.before);
     recorder_.set_attribute("statics", "jump_load_after" + count, change.after);
     if (!context.warn) continue;
-    context.warn(
-        base::format("statics: between the loads {:.10g} and {:.10g} the equilibrium {}; continuation: arc_length "
-                     "follows the branch that it leaves",
-                     change.before, change.after,
-                     change.jumps ? "jumps to another branch (snap-through)" : "goes over to another branch"));
+    context.warn(base::format(
+        "statics: between the loads {} the equilibrium {}; continuation: arc_length "
+        "follows the branch that it leaves",
+        load_text(base::format("{:.10g} and {:.10g}", change.before, change.after)),
+        change.jumps ? "jumps to another branch (snap-through)" : "goes over to another branch (buckling)"));
   }
 }
 
@@ -160,9 +181,7 @@ std::string StaticsRun::loss_sentence(const statics::SweepResult& result) {
                         scene_.units.unit_name(built_.model->controls[index].unit));
   }
   const EquilibriumRows::Stretched least = rows_.least_stretched();
-  if (!least.muscle.empty()) {
-    text += base::format("; there muscle '{}' is at stretch {:.4g}", least.muscle, least.stretch);
-  }
+  if (!least.where.empty()) text += base::format("; there {} is at stretch {:.4g}", least.where, least.stretch);
   return text;
 }
 

@@ -27,12 +27,13 @@ class EquilibriumRows {
   std::string breach(const statics::SweepPoint& point);
   void write(const statics::SweepPoint& point);
 
-  /// A muscle and its stretch.
+  /// A muscle or a cell, and its stretch.
   struct Stretched {
-    std::string muscle;
+    std::string where = {};
     double stretch = 0.0;
   };
-  /// The muscle that is shortest for its rest length at the last row; empty without muscles.
+  /// The muscle that is shortest for its rest length at the last row; without muscles the cell that is squeezed most in
+  /// some direction; empty without either.
   Stretched least_stretched();
 
  private:
@@ -68,6 +69,8 @@ class StaticsRun {
  private:
   /// Where the equilibrium was lost, as the user speaks of it.
   std::string loss_sentence(const statics::SweepResult& result);
+  /// Numbers of the load with its unit and the control that it belongs to, where it does to one.
+  std::string load_text(const std::string& numbers) const;
   /// Where a guard of the model stopped the curve.
   struct Breach {
     std::string sentence = {};          ///< empty: nowhere

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Numerics that fail: exit code 3, a sentence, a valid file with what was computed: test_failures.py MULDI_SIM."""
 
+import re
 import unittest
 
 from program import SCENES, ProgramTest, attribute, data_sets, options, values
@@ -77,6 +78,54 @@ class LostEquilibrium(ProgramTest):
         stretch = values(self.output, "statics/muscles/actuator/stretch")
         self.assertTrue((stretch > 4 ** (-1 / 3)).all())
         self.program("info", "a.h5")
+
+
+class LostEquilibriumOfASolid(ProgramTest):
+    def test_names_the_cell_at_the_stretch_of_the_closed_form(self):
+        """Pull-in of the homogeneous membrane, half a millimetre thick: 58009.6395041 V/mm at the stretch 4^(-1/3)."""
+        arguments = [SCENES / "membrane_fe.yaml", "-o", "a.h5", "--set", "statics={control: supply, to: 40 kV, steps: 10}"]
+        message = self.message("run", *arguments, code=3)
+        where = attribute(self.folder / "a.h5", "status_where")
+        found = re.fullmatch(
+            r"the equilibrium is lost with control 'supply' between ([\d.]+) and ([\d.]+) V; there cell 0 at \[5, 5, 0\.25\] of solid "
+            r"'membrane' is at stretch ([\d.]+)",
+            where,
+        )
+        self.assertIsNotNone(found, where)
+        self.assertLess(float(found[1]), 0.5 * LostEquilibrium.CRITICAL)
+        self.assertGreater(float(found[2]), 0.5 * LostEquilibrium.CRITICAL)
+        self.assertAlmostEqual(float(found[3]), 4 ** (-1 / 3), delta=2e-3)  # the stretch falls as the root of the distance to the limit
+        self.assertEqual(message, f"error: loss_of_equilibrium: {where}{KEPT}{WHY['loss_of_equilibrium']}")
+
+
+class Stability(ProgramTest):
+    """Critical fields as in tests/golden/test_snap_through.cpp."""
+
+    def warnings(self, scene, *overrides):
+        done = self.program("run", SCENES / scene, "-o", "a.h5", *options(overrides))
+        return [line.removeprefix("warning: ") for line in done.stderr.splitlines() if line.startswith("warning: ")]
+
+    def test_of_a_snap_through_is_told_by_both_ways_of_loading(self):
+        said = self.warnings("revolute_joint_snap_through.yaml", "statics.continuation=natural")
+        self.assertEqual(len(said), 1)
+        found = re.fullmatch(
+            r"statics: between the loads ([\d.]+) and ([\d.]+) V/mm of 'agonist' the equilibrium jumps to another branch \(snap-through\); "
+            r"continuation: arc_length follows the branch that it leaves",
+            said[0],
+        )
+        self.assertIsNotNone(found, said[0])
+        self.assertLess(float(found[1]), 17655.306)
+        self.assertGreater(float(found[2]), 17655.306)
+
+    def test_of_a_branch_point_is_told_with_what_leads_onto_the_branch(self):
+        steps = "statics={control: both, to: 17 kV/mm, steps: 17, continuation: arc_length}"
+        said = self.warnings("revolute_joint_fe_shock.yaml", steps, "dynamics.duration=1 ms")
+        self.assertEqual(len(said), 1)
+        self.assertRegex(
+            said[0],
+            r"^statics: the stability changes at the load 14889\.37\d* V/mm of 'both', where another branch crosses \(buckling\): a small force "
+            r"or offset to one side in the scene leads onto it, as every real system has one$",
+        )
 
 
 class Collapse(ProgramTest):
