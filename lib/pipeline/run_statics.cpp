@@ -4,7 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "fem/solid/least_stretch.hpp"
+#include "build/squeezed_cell.hpp"
 #include "pipeline/initial_state.hpp"
 
 namespace muldi::pipeline {
@@ -110,13 +110,8 @@ EquilibriumRows::Stretched EquilibriumRows::least_stretched() {
              .stretch = stretch};
   }
   if (!least.where.empty()) return least;
-  for (const fem::Solid* solid : built_.solids) {
-    const fem::CellStretch cell = fem::least_stretch(solid->elements(), solid->positions(last_.q));
-    if (!least.where.empty() && cell.stretch >= least.stretch) continue;
-    least = {.where = solid->place_of_cell(cell.cell) + " of solid '" + solid->data().name + "'",
-             .stretch = cell.stretch};
-  }
-  return least;
+  const build::SqueezedCell cell = build::squeezed_cell(built_, last_.q);
+  return {.where = cell.name, .stretch = cell.stretch};
 }
 
 StaticsRun::StaticsRun(const scene::Scene& scene, const build::BuiltModel& built, results::Recorder& recorder)
