@@ -126,8 +126,9 @@ void report(const pipeline::Optimised& result, const scene::Scene& scene, const 
   } else if (result.outcome.status == variational::Status::interrupted) {
     base::log_warning(base::format("interrupted; the best iterate is in {}: go on with {}", path, guess_from(path)));
   } else {
-    report_failure(result.outcome, pipeline::Task::optimal_control, scene,
-                   base::format("the best iterate is in {}", path));
+    const bool in_replay = result.replay && result.replay->stopped_at;
+    report_failure(result.outcome, in_replay ? pipeline::Task::replay : pipeline::Task::optimal_control, scene,
+                   base::format("{} in {}", in_replay ? "the optimum is" : "the best iterate is", path));
   }
 }
 

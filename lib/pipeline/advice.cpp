@@ -15,6 +15,11 @@ Advice on_no_convergence(Task task) {
               .remedy =
                   "a stage {minimise: {feasibility: 1}} first, another guess (a simulation, random starts), or a "
                   "smaller step"};
+    case Task::replay:
+      return {.meaning =
+                  "the controls were found; replaying them, Newton's iteration found no next state: held fields jump "
+                  "by what the step of the replay cannot follow",
+              .remedy = "half the optimal_control.replay.step; interpolation: linear; a rate in the objective"};
     case Task::dynamics:
     case Task::explicit_dynamics:
       break;
@@ -74,8 +79,12 @@ Advice advice_on(variational::Status status, Task task) {
                   "another scene pose, links of slightly other lengths, or a joint stop that keeps the mechanism "
                   "off this pose"};
     case Status::breakdown:
-      return {.meaning = "the field in the deformed material is beyond its strength",
-              .remedy = "a lower field, or thicker layers"};
+      return {.meaning =
+                  "a dielectric that is squeezed carries its voltage over less thickness, and the field in it has "
+                  "grown beyond the strength of the material",
+              .remedy =
+                  "a lower field or voltage, thicker layers, a load or stop that keeps the material from being "
+                  "squeezed; in optimal control the limit true_field, below the breakdown_field"};
     case Status::infeasible:
       return {.meaning = "no controls within their bounds meet all conditions, as far as can be told from this guess",
               .remedy =

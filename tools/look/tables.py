@@ -12,7 +12,7 @@ SENTENCES = {
     "loss_of_equilibrium": "Equilibrium was lost: beyond this load there is no equilibrium near (pull-in, buckling or a snap). `continuation: arc_length` follows the path past the limit.",
     "muscle_collapse": "A muscle collapsed: it was pressed together below the stretch at which its model has a meaning.",
     "inverted_element": "An element was turned inside out. A finer mesh, a smaller step or a lower voltage usually help.",
-    "breakdown": "The field exceeded the strength of the material.",
+    "breakdown": "The field in a deformed dielectric exceeded the strength of its material (`breakdown_field`). A lower field or thicker layers help.",
     "step_too_large": "A body turned too far in one step: take a smaller step.",
     "rank_change": "The constraints changed their rank: the mechanism passed through a singular position.",
     "infeasible": "No solution satisfies all conditions.",

@@ -48,6 +48,8 @@ class Solid final : public model::Substructure {
   double potential_scale() const { return potential_scale_; }
   /// What the user should know of the solid before it moves, or empty.
   std::string note() const;
+  /// A cell as messages name it: its number and the middle of its reference.
+  std::string place_of_cell(int cell) const;
   /// U of the mean dilatation, U' and U'' at J for a cell.
   struct Dilation {
     double U = 0.0;
