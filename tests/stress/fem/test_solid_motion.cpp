@@ -92,18 +92,7 @@ TEST(SolidMotion, TheTwoIncompressibleFormulationsAgreeBitForBit) {
 double way_back(const test::SolidSystem& system, double dt, long steps) {
   const auto model = test::make_model(system);
   const variational::State start = test::moving_state(*model, dt, thrown(system));
-  const test::RunSetup setup{.dt = dt, .steps = steps, .step = {.tolerance = 1e-12}};
-  const test::Run there = test::run(*model, start, setup);
-  EXPECT_EQ(there.result.status, variational::Status::completed) << there.result.sentence;
-  variational::State back = there.state;
-  back.p = -back.p;
-  back.advance = -back.advance;
-  back.step = 0;
-  back.t = 0.0;
-  back.factor = {};
-  const test::Run home = test::run(*model, back, setup);
-  EXPECT_EQ(home.result.status, variational::Status::completed) << home.result.sentence;
-  return (home.state.q - start.q).lpNorm<Eigen::Infinity>();
+  return test::distance_after_return(*model, start, {.dt = dt, .steps = steps, .step = {.tolerance = 1e-12}});
 }
 
 TEST(SolidMotion, IsReversibleWithoutViscosityOnly) {
