@@ -13,6 +13,7 @@
 #include "build/built_model.hpp"
 #include "pipeline/node_rows.hpp"
 #include "pipeline/optimise.hpp"
+#include "pipeline/required_size.hpp"
 #include "pipeline/run.hpp"
 #include "pipeline/study/output_expression.hpp"
 #include "pipeline/study/sweep_table.hpp"
@@ -86,6 +87,7 @@ class SweepRun {
       errors.push_back(scene::error_at(study_.origin, "nothing to optimise: the scene has no optimal_control"));
     }
     const build::BuiltModel built = build::build_model(first);
+    require_size_in_memory(first, built);
     std::optional<NodeRows> statics;
     std::optional<NodeRows> dynamics;
     if (is_run && first.statics) statics.emplace(recorder, first, built, NodeRows::Kind::statics, 1);
@@ -186,6 +188,7 @@ class SweepRun {
 
   Outcome run_scene(const scene::Scene& scene, results::MemoryRecorder& recorder) const {
     const build::BuiltModel built = build::build_model(scene);
+    require_size_in_memory(scene, built);
     RunContext context;
     const std::optional<results::Checkpoint> earlier = setup_.earlier ? setup_.earlier(scene) : std::nullopt;
     if (study_.verb == scene::StudyVerb::run) return pipeline::run(scene, built, recorder, context, earlier);
