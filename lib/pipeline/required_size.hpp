@@ -17,8 +17,8 @@ double result_bytes(const scene::Scene& scene, const build::BuiltModel& built);
 /// `output` (a file that need not exist; empty: a file in the current folder) can hold.
 void require_size(const scene::Scene& scene, const build::BuiltModel& built, const std::string& output = {});
 
-/// The same for scenes whose results stay in memory, as those of the points of a sweep and of a fit do: InputError where
-/// both together are more than this machine has.
+/// The same for scenes whose results stay in memory, as those of the points of a sweep and of a fit do: InputError
+/// where both together are more than this machine has.
 void require_size_in_memory(const scene::Scene& scene, const build::BuiltModel& built);
 
 }  // namespace muldi::pipeline
