@@ -46,7 +46,12 @@ class SweepRun {
   SweepEnd run() {
     if (setup_.force && !setup_.merge_only) forget();
     std::vector<FinishedPoint> finished = finished_points(stem_, fingerprint_, outputs_.size());
-    if (!setup_.force && finished.empty() && fs::exists(setup_.table)) {
+    const bool begun = was_begun(stem_, fingerprint_);
+    if (setup_.merge_only && !begun) {
+      throw base::InputError(
+          base::format("nothing to merge: no part of this sweep has begun beside '{}'", setup_.table));
+    }
+    if (!setup_.force && !begun && fs::exists(setup_.table)) {
       throw base::InputError(
           base::format("'{}' exists and is of no such sweep; give --force to overwrite it, or -o FILE", setup_.table));
     }

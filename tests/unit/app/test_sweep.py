@@ -128,6 +128,7 @@ class Sweep(ProgramTest):
     def test_shards_make_the_table_of_the_whole(self):
         study = self.study()
         self.program("sweep", study, "-o", "whole.h5")
+        self.assertEqual(self.message("sweep", study, "-o", "s.h5", "--merge", code=2), "error: nothing to merge: no part of this sweep has begun beside 's.h5'")
         for k in (2, 1):
             self.assertIn(" in other shards", self.program("sweep", study, "-o", "s.h5", "--shard", f"{k}/3").stderr)
         self.assertFalse((self.folder / "s.h5").exists())
