@@ -168,6 +168,39 @@ TEST(SolidMotion, AViscousCubeSpinsFreelyWithoutDissipationOnceItHasWidened) {
   EXPECT_LT(dissipated_in_spin(Formulation::mean_dilatation, 0.05, 3000)[1], 1e-12);
 }
 
+/// Change of energy and dissipation of a free cube that is let go stretched, over what was dissipated.
+double energy_left_over(Formulation formulation, double dt, long steps) {
+  test::SolidSystem system = test::solid_of(test::cube_of(2));
+  Material material = test::rubber(mu, 10.0, formulation);
+  material.viscous = KelvinVoigt{.viscosity = 0.05};
+  system.fill(material, mu, formulation);
+  const auto model = test::make_model(system);
+  VectorXd v(system.solid.X.size());
+  for (int n = 0; n < system.n_nodes(); ++n) {
+    const Vector3d X = system.node(n);
+    v.segment<3>(3 * n) = Vector3d(-0.5 * X[0], -0.5 * X[1], X[2]);
+  }
+  double left = 0.0;
+  double first = 0.0;
+  const test::Run done = test::run(*model, test::moving_state(*model, dt, v), {.dt = dt, .steps = steps},
+                                   [&](const variational::NodeRecord& node) {
+                                     const double H = node.values.total.kinetic + node.values.total.potential();
+                                     if (node.step == 0) first = H;
+                                     left = H - first + node.ledger.dissipated;
+                                   });
+  EXPECT_EQ(done.result.status, variational::Status::completed) << done.result.sentence;
+  return left / done.ledger.dissipated;
+}
+
+TEST(SolidMotion, WhatViscosityTakesIsWhatTheEnergyLoses) {
+  for (const Formulation formulation : {Formulation::displacement, Formulation::incompressible}) {
+    const double coarse = energy_left_over(formulation, 2e-3, 250);
+    const double fine = energy_left_over(formulation, 1e-3, 500);
+    test::record_figure("24", "viscous solid, rest of the balance over what was dissipated", std::abs(coarse), 1e-2);
+    test::record_near("24", "viscous solid, ratio of the rest on halving", coarse / fine, 4.0, 0.2);
+  }
+}
+
 TEST(SolidMotion, RigidRotationDissipatesNothing) {
   test::SolidSystem system = test::solid_of(test::cube_of(2));
   Material material = test::rubber(mu, 10.0, Formulation::displacement);
