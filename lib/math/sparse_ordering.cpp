@@ -36,7 +36,8 @@ struct Metis {
   Metis() {
     void* const library = ::dlopen("libmetis.so.5", RTLD_NOW | RTLD_LOCAL);
     if (library == nullptr) {
-      // Another order than METIS's gives other bits: taken where there is no METIS, never where there is no room for it.
+      // Another order than METIS's gives other bits: taken where there is no METIS, never where there is no room for
+      // it.
       const char* const why = ::dlerror();
       if (why == nullptr || std::strstr(why, "No such file") == nullptr) throw std::bad_alloc();
       return;
