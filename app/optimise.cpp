@@ -16,6 +16,7 @@
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "pipeline/optimise.hpp"
+#include "pipeline/required_size.hpp"
 #include "pipeline/summary.hpp"
 #include "results/hdf5_recorder.hpp"
 #include "scene/read_scene.hpp"
@@ -164,6 +165,7 @@ int optimise(const RunArguments& arguments) {
     base::log_verbose(base::trimmed(pipeline::summary(*scene, *built)));
   }
   const results::Output output = output_of(arguments);
+  pipeline::require_size(*scene, *built, output.path);
   pipeline::OptimiseSetup setup{.earlier = earlier_state(*scene)};
   watch_interrupts();
   results::Hdf5Recorder recorder(output);

@@ -41,7 +41,7 @@ def status_of(result):
     status = result.text("status")
     sentence = SENTENCES.get(status, "")
     where = result.text("status_where")
-    time = result.file.attrs.get("status_time", math.nan)
+    time = result.attributes().get("status_time", math.nan)
     if status != "completed" and isinstance(time, float) and math.isfinite(time):
         sentence = f"At t = {with_unit(time, result.unit('time') if 'time' in result else '')}: " + sentence
     kind = "" if status == "completed" else "open" if status in ("running", "interrupted") else "stopped"
@@ -58,9 +58,10 @@ def facts_of(result):
         facts.append((with_unit(float(dynamics["duration"]), unit), f"of motion in steps of {with_unit(float(dynamics['step']), unit)}"))
     if statics:
         facts.append((str(statics.get("steps", "")), f"load steps, {statics.get('continuation', 'natural').replace('_', ' ')}"))
-    seconds = sum(value for name, value in result.file.attrs.items() if name.startswith("wall_time."))
+    attributes = result.attributes()
+    seconds = sum(value for name, value in attributes.items() if name.startswith("wall_time."))
     if seconds:
-        threads = int(result.file.attrs.get("threads", 1))
+        threads = int(attributes.get("threads", 1))
         facts.append((f"{seconds:.3g} s", f"wall time, {threads} thread{'s' if threads > 1 else ''}"))
     return facts
 
@@ -94,7 +95,7 @@ def solver_rows(series):
 
 
 def wall_times(result):
-    return [(name.split(".", 1)[1], value) for name, value in result.file.attrs.items() if name.startswith("wall_time.")]
+    return [(name.split(".", 1)[1], value) for name, value in result.attributes().items() if name.startswith("wall_time.")]
 
 
 def extent(values):
