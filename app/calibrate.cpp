@@ -56,7 +56,7 @@ std::string heading_of(const pipeline::Calibration& fit, const StudyArguments& a
 }
 
 void require_writable(const std::string& path, const StudyArguments& arguments) {
-  base::refuse_special_output(path);
+  base::refuse_unwritable_output(path);
   if (arguments.force || !fs::exists(path)) return;
   throw base::InputError(base::format("'{}' exists; give --force to overwrite it", path));
 }

@@ -67,7 +67,7 @@ int plot(const LookArguments& arguments) {
   }
   const std::string output = output_of(arguments, ".svg");
   require_ending(output, {".svg", ".png", ".pdf"});
-  base::refuse_special_output(output);
+  base::refuse_unwritable_output(output);
   check_results(arguments.files);
   if (std::count(arguments.what.begin(), arguments.what.end(), "view") != 0) {
     if (arguments.what.size() != 1 || arguments.files.size() != 1) {
@@ -86,7 +86,7 @@ int plot(const LookArguments& arguments) {
 int report(const LookArguments& arguments) {
   const std::string output = output_of(arguments, ".html");
   require_ending(output, {".html", ".htm"});
-  base::refuse_special_output(output);
+  base::refuse_unwritable_output(output);
   check_results(arguments.files);
   become_python("report", {"-o", output, "--", arguments.files.front()},
                 results::to_json(drawing_in(arguments.files.front())));
@@ -114,7 +114,7 @@ int starter(const LookArguments& arguments) {
   if (std::filesystem::exists(arguments.output) && !arguments.force) {
     throw base::InputError(base::format("'{}' exists; give --force to overwrite it", arguments.output));
   }
-  base::refuse_special_output(arguments.output);
+  base::refuse_unwritable_output(arguments.output);
   std::ofstream out(arguments.output, std::ios::binary | std::ios::trunc);
   out << text << std::flush;
   if (!out) throw base::EnvironmentError("cannot write '" + arguments.output + "'");

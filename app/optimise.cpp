@@ -16,6 +16,7 @@
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "pipeline/optimise.hpp"
+#include "pipeline/required_size.hpp"
 #include "pipeline/summary.hpp"
 #include "results/hdf5_recorder.hpp"
 #include "scene/read_scene.hpp"
@@ -126,8 +127,9 @@ void report(const pipeline::Optimised& result, const scene::Scene& scene, const 
   } else if (result.outcome.status == variational::Status::interrupted) {
     base::log_warning(base::format("interrupted; the best iterate is in {}: go on with {}", path, guess_from(path)));
   } else {
-    report_failure(result.outcome, pipeline::Task::optimal_control, scene,
-                   base::format("the best iterate is in {}", path));
+    const bool in_replay = result.replay && result.replay->stopped_at;
+    report_failure(result.outcome, in_replay ? pipeline::Task::replay : pipeline::Task::optimal_control, scene,
+                   base::format("{} in {}", in_replay ? "the optimum is" : "the best iterate is", path));
   }
 }
 
@@ -163,6 +165,7 @@ int optimise(const RunArguments& arguments) {
     base::log_verbose(base::trimmed(pipeline::summary(*scene, *built)));
   }
   const results::Output output = output_of(arguments);
+  pipeline::require_size(*scene, *built, output.path);
   pipeline::OptimiseSetup setup{.earlier = earlier_state(*scene)};
   watch_interrupts();
   results::Hdf5Recorder recorder(output);

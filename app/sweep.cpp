@@ -67,7 +67,7 @@ int write_script(const StudyArguments& arguments, const std::string& table) {
   if (fs::exists(arguments.slurm) && !arguments.force) {
     throw base::InputError(base::format("'{}' exists; give --force to overwrite it", arguments.slurm));
   }
-  base::refuse_special_output(arguments.slurm);
+  base::refuse_unwritable_output(arguments.slurm);
   std::ofstream out(arguments.slurm, std::ios::binary | std::ios::trunc);
   out << slurm_script(arguments, table) << std::flush;
   if (!out) throw base::EnvironmentError("cannot write '" + arguments.slurm + "'");
@@ -105,7 +105,7 @@ int sweep(const StudyArguments& arguments) {
   if (fs::path(setup.table).extension() != ".h5") {
     throw base::InputError("-o: needs a file that ends in .h5, got " + base::in_quotes(setup.table));
   }
-  base::refuse_special_output(setup.table);
+  base::refuse_unwritable_output(setup.table);
   setup.jobs = arguments.jobs;
   setup.force = arguments.force;
   setup.merge_only = arguments.merge;

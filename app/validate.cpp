@@ -23,11 +23,11 @@ int validate(const std::vector<std::string>& scenes, const std::vector<std::stri
       for (const auto* list : {&scene.warnings, &built.notes}) {
         for (const base::Diagnostic& diagnostic : *list) base::log_plain(base::to_string(diagnostic));
       }
+      pipeline::require_size(scene, built);
       const std::optional<results::Checkpoint> earlier = earlier_state(scene);
       if (earlier) pipeline::state_of(*earlier, scene, *built.model);
       pipeline::initial_rates(scene, built, pipeline::initial_coordinates(scene, built));
       if (scene.optimal_control) pipeline::validate_optimal_control(scene, built, earlier);
-      pipeline::require_size(scene, built);
       std::fputs((path + ": " + pipeline::summary(scene, built)).c_str(), stdout);
     } catch (const base::InputError& error) {
       base::log_plain(error.what());

@@ -42,7 +42,8 @@ scene::Material replaced(scene::Material material, const muscles::Replacements& 
   if (by.viscosity) material.viscous = {.law = scene::KelvinVoigt{.viscosity = *by.viscosity}};
   if (material.viscous && std::get<scene::KelvinVoigt>(material.viscous->law).viscosity == 0.0) material.viscous = {};
   if (by.relative_permittivity) {
-    material.electric = {.law = scene::IdealDielectric{.relative_permittivity = *by.relative_permittivity}};
+    if (!material.electric) material.electric.emplace();
+    material.electric->law = scene::IdealDielectric{.relative_permittivity = *by.relative_permittivity};
   }
   return material;
 }

@@ -27,6 +27,11 @@ model::ElectricRecord electric_record(const scene::Scene& scene);
 
 void add_muscles(TermContext& context);
 void add_springs(TermContext& context);
+/// Guards of the dielectrics whose strength is given, after all muscles and solids.
+void add_guards(TermContext& context);
+/// Warns of lumped muscles whose control exceeds the strength of their material in the undeformed muscle already; call
+/// once the model has its controls.
+void note_strong_fields(const scene::Scene& scene, BuiltModel& built);
 void add_loads(TermContext& context);
 /// Springs, dampers, drives and stops of joints; needs the manifold.
 void add_joint_forces(TermContext& context);

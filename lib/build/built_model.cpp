@@ -153,9 +153,11 @@ BuiltModel build_model(const scene::Scene& scene) {
   add_loads(context);
   add_solids(context);
   add_meshed_muscles(context);
+  add_guards(context);
   model::add_supply_totals(electric_record(scene), *built.model);
   add_field_histories(scene, built);
   built.model->controls = controls.take();
+  note_strong_fields(scene, built);
   built.model->bind();
   choose_linear_solvers(scene, built);
   return built;

@@ -4,6 +4,8 @@
 #include <dlfcn.h>
 #include <metis.h>
 
+#include <cstring>
+#include <new>
 #include <numeric>
 
 #include "base/error.hpp"
@@ -21,6 +23,7 @@ std::vector<int> minimum_degree_order(const NodeGraph& graph) {
   std::vector<int> order = natural_order(graph);
   const int status =
       amd_order(graph.n_nodes(), graph.start.data(), graph.neighbours.data(), order.data(), nullptr, nullptr);
+  if (status == AMD_OUT_OF_MEMORY) throw std::bad_alloc();
   MULDI_EXPECT(status == AMD_OK, "AMD accepts every graph with ascending neighbours");
   return order;
 }
@@ -32,7 +35,13 @@ struct Metis {
 
   Metis() {
     void* const library = ::dlopen("libmetis.so.5", RTLD_NOW | RTLD_LOCAL);
-    if (library == nullptr) return;
+    if (library == nullptr) {
+      // Another order than METIS's gives other bits: taken where there is no METIS, never where there is no room for
+      // it.
+      const char* const why = ::dlerror();
+      if (why == nullptr || std::strstr(why, "No such file") == nullptr) throw std::bad_alloc();
+      return;
+    }
     set_default_options = reinterpret_cast<decltype(set_default_options)>(::dlsym(library, "METIS_SetDefaultOptions"));
     node_nd = reinterpret_cast<decltype(node_nd)>(::dlsym(library, "METIS_NodeND"));
   }

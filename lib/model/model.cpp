@@ -87,6 +87,13 @@ std::string Model::body_at(int node) const {
   return node >= 0 && at < body_names.size() ? "body '" + body_names[at] + "'" : "a body";
 }
 
+std::string Model::breach(const NodeView& at) const {
+  for (const Guard& guard : guards) {
+    if (std::string sentence = guard.breach(at); !sentence.empty()) return sentence;
+  }
+  return {};
+}
+
 std::string Model::advice(const NodePoint& at) const {
   std::string sentence;
   each([&](const IntervalTerm& term) {

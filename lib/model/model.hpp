@@ -32,6 +32,7 @@ struct Model {
   std::vector<Control> controls;
   std::vector<Observable> observables;
   std::vector<FieldHistory> histories;
+  std::vector<Guard> guards = {};        ///< looked at in every node that a run accepts; status `breakdown`
   std::vector<Terminal> terminals = {};  ///< of the sources, where a scene records their energies
   bool books_supply = false;             ///< runs keep accounts of what the terminals are supplied with
 
@@ -71,6 +72,8 @@ struct Model {
   std::string inadmissible_anywhere(const Eigen::VectorXd& q) const;
   /// How messages call the body that is this node: by its name, if the model knows it.
   std::string body_at(int node) const;
+  /// What the first guard says that is not silent, or empty.
+  std::string breach(const NodeView& at) const;
   /// The first advice of a term, or empty.
   std::string advice(const NodePoint& at) const;
 

@@ -47,6 +47,12 @@ struct Observable {
   }
 };
 
+/// A limit of a material that no state of a run may pass.
+struct Guard {
+  /// What is passed where, at a node in time; empty where nothing is.
+  std::function<std::string(const NodeView&)> breach;
+};
+
 /// Fields over a mesh, recorded in a series of their own.
 struct FieldHistory {
   struct Field {

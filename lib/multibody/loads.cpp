@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 
+#include "base/mutation.hpp"
 #include "math/rotation.hpp"
 
 namespace muldi::multibody {
@@ -40,7 +41,7 @@ void Loads::bind(const math::BlockPattern& pattern) {
 
 void Loads::add_forces(const model::IntervalPoint& at, model::IntervalForces& out) const {
   for (const Load& load : loads_) {
-    out.force.segment<12>(12 * load.body) += load.magnitude(at.u) * unit_force(load, at.q);
+    out.force.segment<12>(12 * load.body) += base::times_missing_half() * load.magnitude(at.u) * unit_force(load, at.q);
   }
 }
 

@@ -16,6 +16,7 @@
 #include <string_view>
 
 #include "base/describe.hpp"
+#include "base/mutation.hpp"
 #include "muscles/axial.hpp"
 #include "muscles/electric_law.hpp"
 #include "muscles/muscle_model.hpp"
@@ -85,7 +86,7 @@ struct LumpedDea {
     const S i = 1.0 / z;
     const S b3 = lateral_inertia() * i * i * i;
     const S rate = zd * i;
-    const S drag = 1.5 * viscosity * volume() * i * i;
+    const S drag = base::times_missing_half() * 1.5 * viscosity * volume() * i * i;
     return {.l_z = -3.0 * b3 * rate * zd - potential_z(stretch, field[0]),
             .l_d = 2.0 * (b3 + axial_inertia()) * zd,
             .l_zz = 12.0 * b3 * rate * rate - potential_zz(stretch, field[0]),

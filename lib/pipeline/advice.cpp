@@ -15,6 +15,11 @@ Advice on_no_convergence(Task task) {
               .remedy =
                   "a stage {minimise: {feasibility: 1}} first, another guess (a simulation, random starts), or a "
                   "smaller step"};
+    case Task::replay:
+      return {.meaning =
+                  "the controls were found; replaying them, Newton's iteration found no next state: held fields jump "
+                  "by what the step of the replay cannot follow",
+              .remedy = "half the optimal_control.replay.step; interpolation: linear; a rate in the objective"};
     case Task::dynamics:
     case Task::explicit_dynamics:
       break;
@@ -23,8 +28,9 @@ Advice on_no_convergence(Task task) {
               "Newton's iteration found no next state: too much happens within one step, or the motion is not "
               "determined there",
           .remedy =
-              "half the dynamics.step; ramps for controls that jump; more solver.max_iterations; for components "
-              "of your own `muldi-sim check --derivatives`"};
+              "half the dynamics.step (for cells that keep their volume below h sqrt(density/stress), h their shortest "
+              "edge); ramps for controls that jump; more solver.max_iterations; for components of your own `muldi-sim "
+              "check --derivatives`"};
 }
 
 Advice on_step_too_large(Task task) {
@@ -60,20 +66,25 @@ Advice advice_on(variational::Status status, Task task) {
                   "a lower field, or a ramp instead of a jump (a sudden field pulls in at 94 % of the static "
                   "limit); more viscosity; a smaller dynamics.step if the field is moderate"};
     case Status::inverted_element:
-      return {.meaning =
-                  "a cell of the mesh was pressed through itself, by a field beyond pull-in, a load, or a step "
-                  "that is too large",
-              .remedy =
-                  "a smaller dynamics.step, or a ramp instead of a jump; a lower field or load; finer or better "
-                  "shaped cells there"};
+      return {
+          .meaning =
+              "a cell of the mesh was pressed through itself, by a field beyond pull-in, a load, or a step "
+              "that is too large",
+          .remedy =
+              "a smaller dynamics.step (for cells that keep their volume below h sqrt(density/stress), h their "
+              "shortest edge), or a ramp instead of a jump; a lower field or load; finer or better shaped cells there"};
     case Status::rank_change:
       return {.meaning = "at a change point a closed mechanism may go on in two ways, and its joints do not say which",
               .remedy =
                   "another scene pose, links of slightly other lengths, or a joint stop that keeps the mechanism "
                   "off this pose"};
     case Status::breakdown:
-      return {.meaning = "the field in the deformed material is beyond its strength",
-              .remedy = "a lower field, or thicker layers"};
+      return {.meaning =
+                  "a dielectric that is squeezed carries its voltage over less thickness, and the field in it has "
+                  "grown beyond the strength of the material",
+              .remedy =
+                  "a lower field or voltage, thicker layers, a load or stop that keeps the material from being "
+                  "squeezed; in optimal control the limit true_field, below the breakdown_field"};
     case Status::infeasible:
       return {.meaning = "no controls within their bounds meet all conditions, as far as can be told from this guess",
               .remedy =

@@ -7,7 +7,7 @@
 namespace muldi::pipeline {
 
 /// What ended.
-enum class Task { statics, dynamics, explicit_dynamics, optimal_control };
+enum class Task { statics, dynamics, explicit_dynamics, optimal_control, replay };
 
 struct Advice {
   std::string_view meaning = {};  ///< what happened, in a sentence without full stop; empty if nothing needs it

@@ -56,6 +56,16 @@ bool has(const results::Checkpoint& checkpoint, const std::string& name) {
                      [&](const auto& vector) { return vector.name == name; });
 }
 
+/// Records of older versions hold less, and go on with the same numbers to the tolerance.
+void read_factor(const std::vector<std::int64_t>& values, variational::State& state) {
+  state.factor.valid = values[0] != 0;
+  state.factor.first = values[1] != 0;
+  if (values.size() > 2) state.exact_steps = static_cast<int>(values[2]);
+  if (values.size() < 6) return;
+  state.factor_use = {
+      .steps = static_cast<int>(values[3]), .iterations = static_cast<int>(values[4]), .renews = values[5] != 0};
+}
+
 }  // namespace
 
 CheckpointWriter::CheckpointWriter(const model::Model& model, std::size_t n_row) : model_(model) {
@@ -67,7 +77,7 @@ CheckpointWriter::CheckpointWriter(const model::Model& model, std::size_t n_row)
   if (model.books_supply) checkpoint_.reals.push_back({supply, std::vector<double>(model.terminals.size(), 0.0)});
   checkpoint_.integers = {{"step", {-1}}, {"solver", {0, 0}}};
   if (model.substructures.empty()) return;
-  checkpoint_.integers.push_back({"factor", {0, 0, 0}});
+  checkpoint_.integers.push_back({"factor", {0, 0, 0, 0, 0, 0}});
   if (const Eigen::Index n = memory_of(model); n > 0) checkpoint_.reals.push_back({memory, zeros(n)});
 }
 
@@ -103,9 +113,10 @@ const results::Checkpoint& CheckpointWriter::write(const variational::State& sta
   checkpoint_.integers[1].values[0] = last.iterations;
   checkpoint_.integers[1].values[1] = last.factorisations;
   if (model_.substructures.empty()) return checkpoint_;
-  checkpoint_.integers[2].values[0] = state.factor.valid ? 1 : 0;
-  checkpoint_.integers[2].values[1] = state.factor.first ? 1 : 0;
-  checkpoint_.integers[2].values[2] = state.exact_steps;
+  const variational::FactorUse& use = state.factor_use;
+  checkpoint_.integers[2].values = {
+      state.factor.valid ? 1 : 0, state.factor.first ? 1 : 0, state.exact_steps, use.steps, use.iterations,
+      use.renews ? 1 : 0};
   write_memory();
   return checkpoint_;
 }
@@ -134,9 +145,7 @@ variational::State state_of(const results::Checkpoint& checkpoint, const scene::
   if (model.substructures.empty()) {
     state.q.setZero(model.n_q());
   } else {
-    state.factor.valid = checkpoint.integer("factor")[0] != 0;
-    state.factor.first = checkpoint.integer("factor")[1] != 0;
-    if (checkpoint.integer("factor").size() > 2) state.exact_steps = static_cast<int>(checkpoint.integer("factor")[2]);
+    read_factor(checkpoint.integer("factor"), state);
   }
   model.manifold->configuration(state.x, state.q);
   return state;

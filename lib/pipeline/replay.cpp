@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "build/place_bodies.hpp"
 #include "multibody/joint.hpp"
+#include "pipeline/loop_sentence.hpp"
 #include "pipeline/step_options.hpp"
 #include "pipeline/trajectory_rows.hpp"
 #include "scene/read_scene.hpp"
@@ -145,7 +146,7 @@ Outcome ReplayRun::run(const control::Trajectory& optimum, const Eigen::VectorXd
   }
   store();
   return {.status = result.status,
-          .sentence = result.sentence.empty() ? "" : "replay: " + result.sentence,
+          .sentence = result.sentence.empty() ? "" : "replay: " + loop_sentence(result, scene_),
           .time = result.t};
 }
 

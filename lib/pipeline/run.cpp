@@ -5,6 +5,7 @@
 #include "base/text.hpp"
 #include "pipeline/checkpoint.hpp"
 #include "pipeline/initial_state.hpp"
+#include "pipeline/loop_sentence.hpp"
 #include "pipeline/node_rows.hpp"
 #include "pipeline/provenance.hpp"
 #include "pipeline/run_statics.hpp"
@@ -76,7 +77,7 @@ class DynamicsRun {
     };
     const variational::LoopResult result = loop_->run(state_, ledger_, last_, callbacks);
     if (result.status == variational::Status::no_convergence) return failure(result);
-    return {.status = result.status, .sentence = result.sentence, .time = result.t};
+    return {.status = result.status, .sentence = loop_sentence(result, scene_), .time = result.t};
   }
 
  private:

@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "build/squeezed_cell.hpp"
 #include "pipeline/initial_state.hpp"
 
 namespace muldi::pipeline {
@@ -40,13 +41,25 @@ EquilibriumRows::EquilibriumRows(results::Recorder& recorder, const scene::Scene
       zero_v_(Eigen::VectorXd::Zero(built.manifold->n_v())),
       constraint_force_(zero_q_) {}
 
-void EquilibriumRows::write(const statics::SweepPoint& point) {
+void EquilibriumRows::look_at(const statics::SweepPoint& point) {
   last_.load = point.load;
   last_.x = point.state.x;
   last_.q = point.q;
   last_.multipliers = point.state.multipliers;
   last_.y = point.y;
   last_.u.assign(point.u.begin(), point.u.end());
+}
+
+std::string EquilibriumRows::breach(const statics::SweepPoint& point) {
+  if (built_.model->guards.empty()) return {};
+  look_at(point);
+  model::NodeView look = last_view();
+  look.serial = looks_--;
+  return built_.model->breach(look);
+}
+
+void EquilibriumRows::write(const statics::SweepPoint& point) {
+  look_at(point);
   const std::span<const double> x(last_.x.data(), static_cast<std::size_t>(last_.x.size()));
   built_.model->energies({.x = x, .q = last_.q, .v = zero_q_, .u = last_.u}, parts_);
   constraint_force_ = -point.force;
@@ -91,11 +104,14 @@ EquilibriumRows::Stretched EquilibriumRows::least_stretched() {
     if (!observable.path.starts_with("muscles/") || !observable.path.ends_with("/stretch")) continue;
     double stretch = 0.0;
     observable.evaluate(view, {&stretch, 1});
-    if (!least.muscle.empty() && stretch >= least.stretch) continue;
+    if (!least.where.empty() && stretch >= least.stretch) continue;
     constexpr std::size_t around = 16;  // of the name: the folder and the quantity
-    least = {.muscle = observable.path.substr(8, observable.path.size() - around), .stretch = stretch};
+    least = {.where = "muscle '" + observable.path.substr(8, observable.path.size() - around) + "'",
+             .stretch = stretch};
   }
-  return least;
+  if (!least.where.empty()) return least;
+  const build::SqueezedCell cell = build::squeezed_cell(built_, last_.q);
+  return {.where = cell.name, .stretch = cell.stretch};
 }
 
 StaticsRun::StaticsRun(const scene::Scene& scene, const build::BuiltModel& built, results::Recorder& recorder)
@@ -107,6 +123,13 @@ void StaticsRun::prepare() {
   sweep_.emplace(*built_.model, std::move(loads.fixed), std::move(loads.direction), loads.options);
 }
 
+std::string StaticsRun::load_text(const std::string& numbers) const {
+  if (!scene_.statics->control) return numbers;
+  const auto index = static_cast<std::size_t>(scene_.controls.index(scene_.statics->control->name));
+  return base::format("{} {} of '{}'", numbers, scene_.units.unit_name(built_.model->controls[index].unit),
+                      scene_.statics->control->name);
+}
+
 void StaticsRun::report_critical(const std::vector<statics::CriticalPoint>& points, const RunContext& context) {
   using Kind = statics::CriticalPoint::Kind;
   for (const Kind kind : {Kind::limit, Kind::branch}) {
@@ -116,10 +139,15 @@ void StaticsRun::report_critical(const std::vector<statics::CriticalPoint>& poin
       const std::string name = kind == Kind::limit ? "limit_load" : "branch_load";
       recorder_.set_attribute("statics", ++number == 1 ? name : name + "_" + std::to_string(number), point.load);
       if (!context.warn) continue;
-      const std::string load = base::format("{:.10g}", point.load);
-      context.warn(kind == Kind::limit
-                       ? "statics: the load turns at the limit point " + load
-                       : "statics: the stability changes at the load " + load + ", where another branch crosses");
+      const std::string load = load_text(base::format("{:.10g}", point.load));
+      context.warn(
+          kind == Kind::limit
+              ? "statics: the load turns at the limit point " + load +
+                    ": loaded beyond it, the system jumps (pull-in, snap-through); dynamics shows where to, and "
+                    "statics/stable marks the rows of this curve that are stable"
+              : "statics: the stability changes at the load " + load +
+                    ", where another branch crosses (buckling): a small force or offset to one side in the scene "
+                    "leads onto it, as every real system has one");
     }
   }
 }
@@ -131,11 +159,11 @@ void StaticsRun::report_changes(const std::vector<statics::BranchChange>& change
     recorder_.set_attribute("statics", "jump_load_before" + count, change.before);
     recorder_.set_attribute("statics", "jump_load_after" + count, change.after);
     if (!context.warn) continue;
-    context.warn(
-        base::format("statics: between the loads {:.10g} and {:.10g} the equilibrium {}; continuation: arc_length "
-                     "follows the branch that it leaves",
-                     change.before, change.after,
-                     change.jumps ? "jumps to another branch (snap-through)" : "goes over to another branch"));
+    context.warn(base::format(
+        "statics: between the loads {} the equilibrium {}; continuation: arc_length "
+        "follows the branch that it leaves",
+        load_text(base::format("{:.10g} and {:.10g}", change.before, change.after)),
+        change.jumps ? "jumps to another branch (snap-through)" : "goes over to another branch (buckling)"));
   }
 }
 
@@ -148,23 +176,41 @@ std::string StaticsRun::loss_sentence(const statics::SweepResult& result) {
                         scene_.units.unit_name(built_.model->controls[index].unit));
   }
   const EquilibriumRows::Stretched least = rows_.least_stretched();
-  if (!least.muscle.empty()) {
-    text += base::format("; there muscle '{}' is at stretch {:.4g}", least.muscle, least.stretch);
-  }
+  if (!least.where.empty()) text += base::format("; there {} is at stretch {:.4g}", least.where, least.stretch);
   return text;
+}
+
+std::string StaticsRun::breach_sentence(const Breach& breach) const {
+  const double first = breach.before.value_or(breach.at);
+  const std::string loads =
+      first == breach.at ? base::format("{:.10g}", first) : base::format("{:.10g} to {:.10g}", first, breach.at);
+  if (!scene_.statics->control) return base::format("at the load {} {}", loads, breach.sentence);
+  const auto index = static_cast<std::size_t>(scene_.controls.index(scene_.statics->control->name));
+  return base::format("with control '{}' at {} {} {}", scene_.statics->control->name, loads,
+                      scene_.units.unit_name(built_.model->controls[index].unit), breach.sentence);
 }
 
 Outcome StaticsRun::run(RunContext& context) {
   const scene::Statics& said = *scene_.statics;
   long row = 0;
-  const statics::SweepResult result = sweep_->run(state_, {.record =
-                                                               [&](const statics::SweepPoint& point) {
-                                                                 rows_.write(point);
-                                                                 if (context.progress) {
-                                                                   context.progress(row++, said.steps, point.load);
-                                                                 }
-                                                               },
-                                                           .interrupted = context.interrupted});
+  Breach breach;
+  statics::SweepCallbacks callbacks;
+  callbacks.record = [&](const statics::SweepPoint& point) {
+    if (!breach.sentence.empty()) return;
+    breach.at = point.load;
+    breach.sentence = rows_.breach(point);
+    if (!breach.sentence.empty()) return;
+    breach.before = point.load;
+    rows_.write(point);
+    if (context.progress) context.progress(row++, said.steps, point.load);
+  };
+  callbacks.interrupted = [&] { return !breach.sentence.empty() || (context.interrupted && context.interrupted()); };
+  const statics::SweepResult result = sweep_->run(state_, callbacks);
+  if (!breach.sentence.empty()) {
+    return {.status = variational::Status::breakdown,
+            .sentence = breach_sentence(breach),
+            .time = std::numeric_limits<double>::quiet_NaN()};
+  }
   using End = statics::SweepResult::End;
   if (result.end == End::loss_of_equilibrium) {
     recorder_.set_attribute("statics", "critical_load_above", result.last_good);

@@ -23,17 +23,21 @@ StaticLoads static_loads(const scene::Scene& scene, const build::BuiltModel& bui
 class EquilibriumRows {
  public:
   EquilibriumRows(results::Recorder& recorder, const scene::Scene& scene, const build::BuiltModel& built);
+  /// What the guards of the model say of an equilibrium; empty where they are silent.
+  std::string breach(const statics::SweepPoint& point);
   void write(const statics::SweepPoint& point);
 
-  /// A muscle and its stretch.
+  /// A muscle or a cell, and its stretch.
   struct Stretched {
-    std::string muscle;
+    std::string where = {};
     double stretch = 0.0;
   };
-  /// The muscle that is shortest for its rest length at the last row; empty without muscles.
+  /// The muscle that is shortest for its rest length at the last row; without muscles the cell that is squeezed most in
+  /// some direction; empty without either.
   Stretched least_stretched();
 
  private:
+  void look_at(const statics::SweepPoint& point);
   model::NodeView last_view() const;
 
   const build::BuiltModel& built_;
@@ -65,6 +69,15 @@ class StaticsRun {
  private:
   /// Where the equilibrium was lost, as the user speaks of it.
   std::string loss_sentence(const statics::SweepResult& result);
+  /// Numbers of the load with its unit and the control that it belongs to, where it does to one.
+  std::string load_text(const std::string& numbers) const;
+  /// Where a guard of the model stopped the curve.
+  struct Breach {
+    std::string sentence = {};          ///< empty: nowhere
+    std::optional<double> before = {};  ///< the load of the last row
+    double at = 0.0;                    ///< the load that was refused
+  };
+  std::string breach_sentence(const Breach& breach) const;
   /// Limit points and branches that the arc length has passed: attributes and messages.
   void report_changes(const std::vector<statics::BranchChange>& changes, const RunContext& context);
   void report_critical(const std::vector<statics::CriticalPoint>& points, const RunContext& context);

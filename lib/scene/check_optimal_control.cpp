@@ -10,6 +10,7 @@ namespace muldi::scene {
 namespace {
 
 constexpr std::string_view section = "optimal_control";
+constexpr double most_steps = 2e9;
 
 bool drives_muscles(ControlQuantity quantity) {
   return quantity == ControlQuantity::field || quantity == ControlQuantity::layer_voltage ||
@@ -84,7 +85,12 @@ void OptimalControlCheck::horizon() {
     error({"step"}, "missing: give the time step (or `steps`, their number)");
   } else if (problem_.step) {
     std::string why = why_no_multiple(duration.max, *problem_.step, "the step", scene_.units.time());
-    if (!why.empty()) error({"duration"}, std::move(why));
+    const double steps = duration.max / *problem_.step;
+    if (steps > most_steps) {
+      error({"step"}, "gives " + base::number_text(steps, 3) + " steps, at most 2e9 are sought");
+    } else if (!why.empty()) {
+      error({"duration"}, std::move(why));
+    }
   }
 }
 

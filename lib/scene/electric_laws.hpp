@@ -1,5 +1,6 @@
 #pragma once
 /// Electric laws of materials. All numbers in the scene's units.
+#include <optional>
 #include <string_view>
 
 #include "base/describe.hpp"
@@ -69,10 +70,20 @@ using ElectricLaws = base::TypeList<IdealDielectric, Vu, Invariants>;
 
 struct Electric {
   base::VariantOf<ElectricLaws> law = {};
+  std::optional<double> breakdown_field = {};  ///< none: nothing is checked
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit& visit) {
     visit(base::Choice{.key = "model", .doc = "electric law"}, self.law);
+    visit(
+        base::Field{.key = "breakdown_field",
+                    .doc = "dielectric strength: a run ends with `breakdown` where the field in the deformed material "
+                           "(that of lumped muscles, at every Gauss point of finite elements) exceeds it; without it "
+                           "nothing is checked",
+                    .unit = base::dimension::field,
+                    .range = base::positive,
+                    .need = base::Need::optional},
+        self.breakdown_field);
   }
   friend bool operator==(const Electric&, const Electric&) = default;
 };

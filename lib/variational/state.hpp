@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "variational/factor_use.hpp"
+
 namespace muldi::variational {
 
 /// Where the factors of the substructures were made: with it a restart makes the same ones.
@@ -28,6 +30,7 @@ struct State {
   Eigen::VectorXd y = {};        ///< stage unknowns of the last interval (n_y), the predictor
   Eigen::VectorXd advance = {};  ///< last increment of the substructures' positions (n_q)
   FactorPoint factor = {};
+  FactorUse factor_use = {};
   int exact_steps = 0;  ///< steps to come that solve for substructures with exact derivatives from the start
 };
 

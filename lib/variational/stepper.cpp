@@ -17,14 +17,6 @@ using base::Mutation;
 constexpr double longest_increment = 0.5;
 /// Halvings of an increment that leaves the admissible configurations.
 constexpr int max_halvings = 12;
-/// Relative residual below which increments may stop falling: round-off of badly conditioned systems.
-constexpr double round_off_residual = 1e-12;
-/// The same of pressures, by increments of positions that are round-off and by those of the pressures themselves (over
-/// the shear modulus): the viscous stress by which a step resists the last bit of a position is eta/dt times as large.
-constexpr double round_off_positions = 1e-13;
-constexpr double round_off_pressures = 1e-8;
-/// A kept factor is made anew where an iteration reduces the increment by less than this.
-constexpr double slow_rate = 0.4;
 /// Accuracy of increments with exact derivatives: that of their own size, between these.
 constexpr double coarsest_accuracy = 1e-2;
 constexpr double finest_accuracy = 1e-6;
@@ -180,8 +172,8 @@ bool Stepper::factorise_parts(const model::IntervalPoint& at, StepReport& report
   return false;
 }
 
-double Stepper::solve(const State& state, std::span<const double> u, StepReport& report) {
-  constexpr double failed = std::numeric_limits<double>::quiet_NaN();
+Increment Stepper::solve(const State& state, std::span<const double> u, StepReport& report) {
+  constexpr Increment failed{.size = std::numeric_limits<double>::quiet_NaN()};
   const model::IntervalPoint at = point(state, u);
   if (manifold_.n_v() > 0) {
     manifold_.update(x_, q_, *frame_k_);
@@ -204,25 +196,24 @@ double Stepper::solve(const State& state, std::span<const double> u, StepReport&
     g_ = -g_;
     solver_->solve(r_, g_, dw_, dmu_);
   }
-  double size = dw_.size() > 0 ? dw_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>() : 0.0;
+  Increment increment;
+  increment.size = dw_.size() > 0 ? dw_.cwiseQuotient(scale_).lpNorm<Eigen::Infinity>() : 0.0;
+  increment.length = increment.size;
   if (!parts_.empty()) {
     dq_.setZero();
     manifold_.lift(*frame_k_, dw_, dq_);
     parts_.complete(dq_, dy_);
     const model::IncrementSize of_parts = parts_.size_of(dq_, dy_);
-    length_ = std::max(size, of_parts.positions);
-    if (!(of_parts.largest() <= size)) size = of_parts.largest();
-  } else {
-    length_ = size;
+    increment.length = std::max(increment.length, of_parts.positions);
+    increment.stage = of_parts.stage;
+    if (!(of_parts.largest() <= increment.size)) increment.size = of_parts.largest();
   }
-  if (!std::isfinite(size)) report.sentence = "the Newton increment is not finite";
-  return size;
+  if (!std::isfinite(increment.size)) report.sentence = "the Newton increment is not finite";
+  return increment;
 }
 
 bool Stepper::newton(const State& state, std::span<const double> u, bool keep_factors, StepReport& report) {
-  double previous = 0.0;
-  int since_change = 0;  // iterations with the same factor, or with the exact derivative
-  bool is_new = false;   // the factor is of this step
+  Contraction contraction;
   halvings_ = max_halvings;
   exact_ = !keep_factors || state.exact_steps > 0;
   for (int iteration = 1; iteration <= options_.max_iterations; ++iteration) {
@@ -231,37 +222,36 @@ bool Stepper::newton(const State& state, std::span<const double> u, bool keep_fa
       if (!retreat(report)) return false;
       evaluate(state, u);
     }
-    if (iteration > 1 && previous <= options_.tolerance && forces_.violation <= violation_round_off) return true;
+    if (contraction.is_small(options_.tolerance) && forces_.violation <= violation_round_off) return true;
     report.residual = residual_of(state);
     ++report.iterations;
     const int factorisations = report.factorisations;
     wants_factor_ |= !keep_factors;
-    accuracy_ = iteration == 1 ? coarsest_accuracy : std::clamp(previous, finest_accuracy, coarsest_accuracy);
-    const double size = solve(state, u, report);
-    if (!std::isfinite(size)) return false;
-    since_change = report.factorisations > factorisations ? 1 : since_change + 1;
-    is_new |= report.factorisations > factorisations;
-    const bool in_last_bits = length_ <= round_off_positions && size <= round_off_pressures;
-    const bool stagnates =
-        iteration > 3 && size > 0.5 * previous && (report.residual < round_off_residual || in_last_bits);
-    const bool slow = since_change > 1 && size > slow_rate * previous && size > options_.tolerance;
-    if (!parts_.empty() && slow && !stagnates) {
+    accuracy_ = iteration == 1 ? coarsest_accuracy : std::clamp(contraction.size(), finest_accuracy, coarsest_accuracy);
+    const Increment increment = solve(state, u, report);
+    if (!std::isfinite(increment.size)) return false;
+    contraction.take(increment, report.factorisations > factorisations, report.residual);
+    if (!parts_.empty() && contraction.is_slow(options_.tolerance) && !contraction.stagnates()) {
       // What a new factor does not mend is not in its matrix.
-      const bool use_exact = !exact_ && is_new && since_change == 2;
+      const bool use_exact = !exact_ && contraction.judges_new_factor();
+      const bool grows = contraction.grows();
       exact_ |= use_exact;
       wants_factor_ = !use_exact;
-      if (use_exact) since_change = 0;
-      if (size > previous && use_exact) continue;
-      if (size > previous && !exact_) {
+      if (use_exact) contraction.count_anew();
+      if (use_exact && grows) {
+        contraction.drop_last();
+        continue;
+      }
+      if (grows && !exact_) {
         report.sentence = "the increments grow";
         return false;
       }
     }
-    if (length_ > longest_increment) scale_increment(longest_increment / length_);
+    if (increment.length > longest_increment) scale_increment(longest_increment / increment.length);
     apply_increment(state, report);
     if (!report.sentence.empty()) return false;
-    if ((size <= options_.tolerance && forces_.violation <= violation_goal) || stagnates) return true;
-    previous = size;
+    if (contraction.is_small(options_.tolerance) && forces_.violation <= violation_goal) return true;
+    if (contraction.stagnates()) return true;
   }
   report.sentence = "no convergence in " + std::to_string(options_.max_iterations) + " Newton iterations";
   return false;
@@ -307,6 +297,7 @@ StepReport Stepper::advance(State& state, std::span<const double> u) {
   manifold_.update(state.x, state.q, *frame_n_);
   if (!choose_loop_rows(report)) return report;
   restore_factors(state, u);
+  wants_factor_ |= state.factor_use.renews;
   bool converged = attempt(state, u, {.extrapolate = true, .keep_factors = true}, report);
   if (!converged && !parts_.empty()) {
     wants_factor_ = true;
@@ -377,6 +368,7 @@ void Stepper::finish(State& state, std::span<const double> u, StepReport& report
     if constexpr (has(Mutation::potentials_at_nodes)) y_ = 2.0 * y_ - state.y;
     state.y = y_;
     if (report.factorisations > 0 || !state.factor.valid) state.factor = factor_;
+    state.factor_use.book(report.iterations, report.factorisations > 0);
     // Tried without again now and then: the exact derivative costs many products.
     state.exact_steps = exact_ && state.exact_steps == 0 ? exact_for_steps : std::max(0, state.exact_steps - 1);
   }

@@ -9,20 +9,22 @@
 /// with the unknown q_{n+1} moved along minimal increments, Z the basis of the loop rows at q_n, and
 /// Z mu = dt lambda_n (dt/2 at the first node). Some terms add to the bracket what depends on q_n itself and to p_{n+1}
 /// what depends on q_{n+1}; substructures add stage rows. Newton's matrix is exact for bodies and muscles; that of
-/// substructures is factorised once and kept while the increments keep falling (performance: a lagged factor with exact
-/// residuals); where they do not fall with a new factor either, its exact derivative is used.
+/// substructures is factorised once and kept while that pays (FactorUse) and the increments keep falling (performance:
+/// a lagged factor with exact residuals); where they do not fall with a new factor either, its exact derivative is
+/// used.
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "model/model.hpp"
 #include "model/substructure_set.hpp"
+#include "variational/contraction.hpp"
 #include "variational/step_method.hpp"
 
 namespace muldi::variational {
 
 struct StepOptions {
-  double tolerance = 1e-10;  ///< largest dimensionless Newton increment whose result is accepted
+  double tolerance = 1e-10;  ///< largest dimensionless Newton increment whose result is accepted (Contraction)
   int max_iterations = 30;
   std::string linear = "auto";         ///< auto | tree | dense | bordered
   std::string substructures = "auto";  ///< solver of the substructures: auto | direct | iterative | a named one
@@ -64,8 +66,8 @@ class Stepper final : public StepMethod {
   /// Chooses the loop rows at frame_n_; false where their rank is not that of the scene pose.
   bool choose_loop_rows(StepReport& report);
   bool newton(const State& state, std::span<const double> u, bool keep_factors, StepReport& report);
-  /// Tangent, factors and the increment dw_, dmu_, dq_, dy_; returns its size, NaN on failure.
-  double solve(const State& state, std::span<const double> u, StepReport& report);
+  /// Tangent, factors and the increment dw_, dmu_, dq_, dy_; its size is NaN on failure.
+  Increment solve(const State& state, std::span<const double> u, StepReport& report);
   /// Takes the increment, halved until the terms can be evaluated.
   void apply_increment(const State& state, StepReport& report);
   /// Halves the increment once more; false if it has been halved too often.
@@ -122,7 +124,6 @@ class Stepper final : public StepMethod {
   bool wants_factor_ = true;
   bool exact_ = false;      // increments of substructures by their exact derivatives, not by their factors alone
   double accuracy_ = 0.0;   // of such increments
-  double length_ = 0.0;     // of the increment, its stage unknowns left out: the equations are nearly linear in these
   bool evaluated_ = false;  // forces_ are those of the iterate
   int halvings_ = 0;
   double reference_regularity_ = 1.0;

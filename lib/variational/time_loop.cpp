@@ -65,10 +65,15 @@ LoopResult TimeLoop::run(State& state, Ledger& ledger, StepReport& last, const L
     if (u_ != u_before_) jump = nodes_.electric(state, u_) - nodes_.electric(state, u_before_);
     if (supply_.is_kept()) book_supply(state, ledger);
     before_ = state;
+    if (state.step == 0 && refuses(state, u_before_, result)) break;
     const StepReport report = stepper_->advance(state, u_);
     if (report.status != Status::running) {
       result.status = report.status;
       result.sentence = report.sentence;
+      break;
+    }
+    if (refuses(state, u_, result)) {
+      state = before_;
       break;
     }
     if (recorded) record(callbacks, before_, ledger, last, {stepper_->constraint_force(), state.multipliers, state.y});
@@ -97,24 +102,33 @@ LoopResult TimeLoop::run(State& state, Ledger& ledger, StepReport& last, const L
 }
 
 void TimeLoop::book_supply(const State& state, Ledger& ledger) {
-  // Charges depend on positions and controls: velocities may be those of an earlier node.
-  const auto view = [&](const std::vector<double>& u) {
-    return model::NodeView{.serial = looks_--,
-                           .t = state.t,
-                           .x = state.x,
-                           .rate = values_.rate,
-                           .q = state.q,
-                           .v = values_.v,
-                           .constraint_force = values_.v,
-                           .multipliers = state.multipliers,
-                           .y = state.y,
-                           .u = u};
-  };
-  if (state.step == 0) supply_.open(view(u_before_), ledger.supply);
+  if (state.step == 0) supply_.open(look(state, u_before_), ledger.supply);
   supply_after_ = ledger.supply;
   if (u_ == u_before_) return;
-  supply_.stand(view(u_before_));
-  supply_.change(view(u_), supply_after_);
+  supply_.stand(look(state, u_before_));
+  supply_.change(look(state, u_), supply_after_);
+}
+
+model::NodeView TimeLoop::look(const State& state, const std::vector<double>& u) {
+  return {.serial = looks_--,
+          .t = state.t,
+          .x = state.x,
+          .rate = values_.rate,
+          .q = state.q,
+          .v = values_.v,
+          .constraint_force = values_.v,
+          .multipliers = state.multipliers,
+          .y = state.y,
+          .u = u};
+}
+
+bool TimeLoop::refuses(const State& state, const std::vector<double>& u, LoopResult& result) {
+  if (model_.guards.empty()) return false;
+  result.sentence = model_.breach(look(state, u));
+  if (result.sentence.empty()) return false;
+  result.status = Status::breakdown;
+  result.t_of_breach = state.t;
+  return true;
 }
 
 void TimeLoop::record(const LoopCallbacks& callbacks, const State& state, const Ledger& ledger, const StepReport& last,

@@ -69,6 +69,7 @@ struct LoopResult {
   std::string sentence;
   double t = 0.0;
   LoopStatistics statistics;
+  double t_of_breach = 0.0;  ///< with Status::breakdown: the node that was refused, the one after t or that at t = 0
 };
 
 class TimeLoop {
@@ -92,6 +93,10 @@ class TimeLoop {
   void record(const LoopCallbacks& callbacks, const State& state, const Ledger& ledger, const StepReport& last,
               const Reactions& reactions);
   void record_end(const LoopCallbacks& callbacks, const State& state, Ledger& ledger, const StepReport& last);
+  /// True, and said in the result, if a guard of the model does not let pass this node under the controls u.
+  bool refuses(const State& state, const std::vector<double>& u, LoopResult& result);
+  /// What guards and sources see of a node: positions and controls; velocities may be those of an earlier node.
+  model::NodeView look(const State& state, const std::vector<double>& u);
   /// Opens the accounts of the sources at t = 0; leaves in supply_after_ those after the change of the controls here.
   void book_supply(const State& state, Ledger& ledger);
 

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "base/text.hpp"
 #include "scene_run.hpp"
+#include "support/figure.hpp"
 
 namespace muldi::golden {
 namespace {
@@ -33,9 +35,9 @@ EnergyError energy_error(const std::string& duration, const std::string& step) {
 TEST(RevoluteJointFeLong, EnergyErrorOverFiveSecondsIsBoundedAndWithinThePublishedOne) {
   const EnergyError coarse = energy_error("5 s", "2 ms"), fine = energy_error("5 s", "1 ms");
   // Published 9.61e-5 and 2.29e-5 %; an independent program has 20 to 35 % less, and so have we.
-  EXPECT_LT(coarse.percent, 9.61e-5);
+  test::record_figure("34", "energy error over 5 s at 2 ms, percent (published)", coarse.percent, 9.61e-5);
   EXPECT_NEAR(coarse.percent, 7.58e-5, 0.02e-5);  // recorded
-  EXPECT_LT(fine.percent, 2.29e-5);
+  test::record_figure("34", "energy error over 5 s at 1 ms, percent (published)", fine.percent, 2.29e-5);
   EXPECT_NEAR(fine.percent, 1.88e-5, 0.02e-5);  // recorded
   EXPECT_NEAR(coarse.percent / fine.percent, 4.0, 0.2);
   // No drift: the first of five seconds has nearly the largest error.
@@ -45,8 +47,11 @@ TEST(RevoluteJointFeLong, EnergyErrorOverFiveSecondsIsBoundedAndWithinThePublish
 }
 
 TEST(RevoluteJointFeLong, EnergyErrorAtATenthOfAMillisecondIsTheSquareOfTheStepBelow) {
-  const EnergyError finest = energy_error("1 s", "0.1 ms");
-  EXPECT_LT(finest.percent, 2.88e-7);            // published, over 5 s
+  const EnergyError fine = energy_error("1 s", "1 ms"), finest = energy_error("1 s", "0.1 ms");
+  // Published over 5 s; most of it comes in the first second.
+  test::record_figure("34", "energy error over 1 s at 0.1 ms, percent (published)", finest.percent, 2.88e-7);
+  // Second order; the published ones have 79.5.
+  test::record_near("34", "energy error at 1 ms over that at 0.1 ms", fine.percent / finest.percent, 100.0, 3.0);
   EXPECT_NEAR(finest.percent, 1.87e-7, 0.1e-7);  // recorded over 5 s
 }
 
@@ -74,6 +79,41 @@ TEST(ElephantTrunkFeLong, SwingsForTenSecondsAboutItsEquilibrium) {
   for (int joint = 1; joint <= 6; ++joint) {
     const auto angle = run.rows(base::format("joints/joint{}/coordinate", joint));
     EXPECT_NEAR(angle.rightCols(100).mean() / degree, 6.942, 0.15) << joint;
+  }
+}
+
+TEST(RevoluteJointTwinLong, MusclesThatPullInEndTheLoadStepsWhereTheArcLengthTurns) {
+  const SceneRun run("revolute_joint_twin",
+                     {"dynamics.duration=1 ms", "statics={control: agonist, from: 40 kV/mm, to: 60 kV/mm, steps: 2}"});
+  EXPECT_EQ(run.outcome().status, variational::Status::loss_of_equilibrium);
+  const double critical = 59101.858;  // recorded, by continuation: arc_length from 0 to 120 kV/mm
+  EXPECT_LT(run.attribute("statics", "critical_load_above"), critical);
+  EXPECT_GT(run.attribute("statics", "critical_load_below"), critical);
+  // The last good state is on record, and is the last.
+  EXPECT_EQ(run.value("statics/load"), run.attribute("statics", "critical_load_above"));
+  EXPECT_NEAR(run.value("statics/joints/hinge/coordinate") / degree, 61.7, 0.5);  // of the curve at its limit
+}
+
+/// Kinetic energy at the end over that at the beginning, of a small motion about the equilibrium; infinite if the run
+/// fails. `share`: of the step h sqrt(rho/s) with the height of a layer and the Maxwell stress eps E^2.
+double growth(double field, double density, double share) {
+  const double stress = 3.7 * 8.8542e-12 * field * field;
+  const double step = 1e-4 * std::floor(1e4 * share * 100.0 / 23.0 * std::sqrt(density / stress));
+  const SceneRun run(
+      "revolute_joint_twin",
+      {"initial={from: static_equilibrium, momentum: {hinge: 1}}", "materials.silicone.viscous.viscosity=0.01",
+       base::format("materials.silicone.density={}", density), base::format("controls.agonist.field={}", field),
+       "statics.steps=4", "record.every=1",
+       base::format("dynamics={{duration: {:.6f}, step: {:.6f}}}", 120 * step, step)});
+  const auto kinetic = run.rows("energy/kinetic");
+  return run.outcome().completed() ? kinetic.rightCols<1>()[0] / kinetic(0, 0) : HUGE_VAL;
+}
+
+/// lib/THEORY.md, 9: pressures act at nodes in time, the other stresses between them.
+TEST(RevoluteJointTwinLong, StressedCellsOfConstantVolumeBoundTheStep) {
+  for (const auto& [field, density] : {std::pair(3e4, 1e-3), std::pair(1.5e4, 1e-3), std::pair(3e4, 4e-3)}) {
+    EXPECT_LT(growth(field, density, 0.8), 1.0) << field << ' ' << density;
+    EXPECT_GT(growth(field, density, 1.25), 1.0) << field << ' ' << density;
   }
 }
 

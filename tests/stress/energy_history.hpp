@@ -22,7 +22,11 @@ class EnergyHistory {
     last_.add(deviation, 10.0 * static_cast<double>(node.step) / static_cast<double>(steps_) - 9.0);
     lowest_ = std::min(lowest_, node.values.total.potential());
     highest_ = std::max(highest_, node.values.total.potential());
-    violation_ = std::max(violation_, manifold_.violation(node.state.q));
+    const double gap = manifold_.violation(node.state.q);
+    violation_ = std::max(violation_, gap);
+    const double size = node.state.q.lpNorm<Eigen::Infinity>();
+    if (node.step == 0) size_ = size;
+    gaps_.add(gap / std::max(1.0, size / size_), node.step, steps_);
   }
 
   /// |H - H_0|.
@@ -33,6 +37,12 @@ class EnergyHistory {
   double drift() const { return last_.mean() - first_.mean(); }
   /// Largest violation of a constraint, redundant ones included.
   double violation() const { return violation_; }
+  /// That of the last tenth over that of the first, where bodies that fly away are granted the wider spacing of numbers
+  /// far from the origin; both no smaller than that at 1.
+  double violation_growth() const {
+    constexpr double round_off = std::numeric_limits<double>::epsilon();
+    return std::max(gaps_.last_tenth, round_off) / std::max(gaps_.first_tenth, round_off);
+  }
 
  private:
   struct HannMean {
@@ -55,7 +65,12 @@ class EnergyHistory {
   double lowest_ = std::numeric_limits<double>::infinity();
   double highest_ = -std::numeric_limits<double>::infinity();
   double violation_ = 0.0;
+  double size_ = 1.0;  ///< largest entry of q at the start
+  Band gaps_;          ///< violations of constraints
 };
+
+/// Ten times the steps: round-off that adds up at random grows by this factor, a drift by 10 (numerics 5 no. 6).
+inline const double root_of_ten = std::sqrt(10.0);
 
 /// The history of a run; one that fails throws. The last Newton increment is below 1e-10, so what it leaves is its
 /// square: round-off.

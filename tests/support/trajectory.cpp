@@ -30,19 +30,37 @@ NodeSample sample(const model::Model& model, const variational::State& state, co
 }
 
 Orders observed_orders(const model::Model& model, const variational::State& state, const RunSetup& setup) {
-  std::array<NodeSample, 3> at;
-  for (std::size_t k = 0; k < 3; ++k) {
+  std::array<NodeSample, 4> at;
+  for (std::size_t k = 0; k < at.size(); ++k) {
     const long factor = 1L << k;
     at[k] = sample(model, state,
                    {.dt = setup.dt / static_cast<double>(factor), .steps = setup.steps * factor, .step = setup.step});
   }
   const auto order = [&](Eigen::VectorXd NodeSample::*value) {
-    return std::log2((at[0].*value - at[1].*value).norm() / (at[1].*value - at[2].*value).norm());
+    const auto slope = [&](std::size_t k) {
+      return std::log2((at[k].*value - at[k + 1].*value).norm() / (at[k + 1].*value - at[k + 2].*value).norm());
+    };
+    return std::abs(slope(0) - 2.0) > std::abs(slope(1) - 2.0) ? slope(0) : slope(1);
   };
   return {.q = order(&NodeSample::q),
           .momentum = order(&NodeSample::momentum),
           .reaction = order(&NodeSample::reaction),
           .multipliers = order(&NodeSample::multipliers)};
+}
+
+double distance_after_return(const model::Model& model, const variational::State& start, const RunSetup& setup) {
+  const Run there = run(model, start, setup);
+  if (there.result.status != variational::Status::completed) throw std::runtime_error(there.result.sentence);
+  variational::State back = there.state;
+  back.p = -back.p;
+  back.increment = -back.increment;
+  back.advance = -back.advance;
+  back.step = 0;
+  back.t = 0.0;
+  back.factor = {};
+  const Run home = run(model, back, setup);
+  if (home.result.status != variational::Status::completed) throw std::runtime_error(home.result.sentence);
+  return (home.state.q - start.q).lpNorm<Eigen::Infinity>();
 }
 
 void Band::add(double deviation, long step, long steps) {

@@ -44,7 +44,12 @@ struct Orders {
   double reaction = 0.0;
   double multipliers = 0.0;
 };
+/// Slopes of steps dt, dt/2, dt/4, dt/8: of the two that they give, the one further from 2.
 Orders observed_orders(const model::Model& model, const variational::State& state, const RunSetup& setup);
+
+/// Distance from the start, largest entry of q, after the steps of `setup` and as many back with the momentum turned
+/// round; a run that fails throws.
+double distance_after_return(const model::Model& model, const variational::State& start, const RunSetup& setup);
 
 /// (4 fine - coarse)/3: the limit of a second-order value from steps h and h/2.
 inline double extrapolated(double coarse, double fine) { return (4.0 * fine - coarse) / 3.0; }

@@ -1,12 +1,16 @@
 """A result file of muldi-sim as plot and report see it: finished, interrupted, or still being written."""
 
 import contextlib
+import fcntl
+import os
 import pathlib
 import re
 
 import h5py
 import numpy
 import yaml
+
+from guarded import reading
 
 
 class WrongInput(Exception):
@@ -66,47 +70,78 @@ class Series:
         return self.x[:rows], values[:rows]
 
 
+def is_being_written(path):
+    """Whether another process has it open: writers share their lock with readers."""
+    with open(path, "rb") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
+    return False
+
+
+def opened(path):
+    """The file, as readers beside a writer open it if there is one: these try again, ever more slowly, where a check sum does not fit,
+    which in a damaged file never ends."""
+    if is_being_written(path):
+        with contextlib.suppress(OSError):
+            return h5py.File(path, "r", swmr=True)
+    return h5py.File(path, "r")
+
+
 class Result:
     """An open file; `label` tells it from the others in legends."""
 
     def __init__(self, path):
         self.path = pathlib.Path(path)
         self.label = self.path.stem
-        try:
+        with self.reading():
             try:
-                self.file = h5py.File(path, "r", swmr=True)
-            except OSError:
-                self.file = h5py.File(path, "r")
-        except OSError as error:
-            raise WrongInput(f"cannot read '{path}': {error}") from error
-        if "status" not in self.file.attrs:
-            raise WrongInput(f"'{path}' is no result of muldi-sim: it has no status")
+                self.file = opened(path)
+            except OSError as error:
+                raise WrongInput(f"cannot read '{path}': {error}") from error
+            if "status" not in self.file.attrs:
+                raise WrongInput(f"'{path}' is no result of muldi-sim: it has no status")
         try:
             self.scene = yaml.safe_load(self.text("scene")) or {}
         except yaml.YAMLError:
             self.scene = {}
         self.series = []
 
+    def reading(self):
+        """Around everything that HDF5 reads of this file."""
+        size = os.path.getsize(self.path) if self.path.exists() else 0
+        return reading(size)
+
     def read_series(self):
         """Finds the series that have rows; after the labels are settled."""
         for prefix, axis in (("", "time"), ("replay/", "time"), ("statics/", "load")):
-            if prefix + axis in self.file and self.file[prefix + axis].shape[0]:
+            if prefix + axis in self and len(self.values(prefix + axis)):
                 self.series.append(Series(self, prefix, prefix + axis))
 
     def text(self, name):
-        value = self.file.attrs.get(name, "")
+        with self.reading():
+            value = self.file.attrs.get(name, "")
         return value.decode() if isinstance(value, bytes) else str(value)
 
     def __contains__(self, name):
-        return name in self.file
+        with self.reading():
+            return name in self.file
 
     def names(self, folder):
-        item = self.file.get(folder)
-        return sorted(item, key=natural) if isinstance(item, h5py.Group) else []
+        with self.reading():
+            item = self.file.get(folder)
+            return sorted(item, key=natural) if isinstance(item, h5py.Group) else []
 
     def attribute(self, name, attribute):
-        value = self.file[name].attrs.get(attribute, "")
+        with self.reading():
+            value = self.file[name].attrs.get(attribute, "")
         return value.decode() if isinstance(value, bytes) else str(value)
+
+    def attributes(self, name="/"):
+        """All attributes of the file, or of what `name` is."""
+        with self.reading():
+            return dict(self.file[name].attrs)
 
     def unit(self, name):
         return self.attribute(name, "unit")
@@ -116,14 +151,31 @@ class Result:
 
     def values(self, name):
         """All rows that are there now."""
-        data = self.file[name]
-        with contextlib.suppress(RuntimeError, OSError):
-            data.id.refresh()
-        return data[()]
+        with self.reading():
+            data = self.file[name]
+            with contextlib.suppress(RuntimeError, OSError):
+                data.id.refresh()
+            return data[()]
+
+    def is_column(self, name):
+        """Whether it is a data set of one number a row; and its rows."""
+        with self.reading():
+            data = self.file[name]
+            return isinstance(data, h5py.Dataset) and data.ndim == 1, len(data)
+
+    def below(self, folder):
+        """Paths of everything below a group, which need not exist."""
+        found = []
+        with self.reading():
+            group = self.file.get(folder)
+            if isinstance(group, h5py.Group):
+                group.visit(found.append)
+        return found
 
     def rows(self, name, rows):
         """Some rows by number, in rising order."""
-        return numpy.asarray(self.file[name][list(rows)])
+        with self.reading():
+            return numpy.asarray(self.file[name][list(rows)])
 
     def step(self):
         """The time step of the dynamics, or None."""

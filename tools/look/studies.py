@@ -93,7 +93,7 @@ class Sweep:
         return self.result.names(folder)
 
     def column(self, path, name):
-        words = self.result.attribute(path, "words") if "words" in self.result.file[path].attrs else ""
+        words = self.result.attribute(path, "words")
         return Column(name, self.result.unit(path), self.result.values(path).astype(float), words.split("\n") if words else None)
 
     @property

@@ -108,7 +108,7 @@ def calibration_page(result):
     title = f"Calibration {result.text('study')}"
     status = result.text("status")
     kind = "" if status == "completed" else "open" if status == "interrupted" else "stopped"
-    iterations = int(result.file.attrs["iterations"])
+    iterations = int(result.attributes()["iterations"])
     sentence = f"{'Converged' if status == 'completed' else 'Stopped'} after {iterations} {'iteration' if iterations == 1 else 'iterations'}."
     warnings = [text for text in result.text("warnings").split("\n") if text]
     names = result.names("parameters")

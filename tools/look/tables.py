@@ -12,7 +12,7 @@ SENTENCES = {
     "loss_of_equilibrium": "Equilibrium was lost: beyond this load there is no equilibrium near (pull-in, buckling or a snap). `continuation: arc_length` follows the path past the limit.",
     "muscle_collapse": "A muscle collapsed: it was pressed together below the stretch at which its model has a meaning.",
     "inverted_element": "An element was turned inside out. A finer mesh, a smaller step or a lower voltage usually help.",
-    "breakdown": "The field exceeded the strength of the material.",
+    "breakdown": "The field in a deformed dielectric exceeded the strength of its material (`breakdown_field`). A lower field or thicker layers help.",
     "step_too_large": "A body turned too far in one step: take a smaller step.",
     "rank_change": "The constraints changed their rank: the mechanism passed through a singular position.",
     "infeasible": "No solution satisfies all conditions.",
@@ -41,7 +41,7 @@ def status_of(result):
     status = result.text("status")
     sentence = SENTENCES.get(status, "")
     where = result.text("status_where")
-    time = result.file.attrs.get("status_time", math.nan)
+    time = result.attributes().get("status_time", math.nan)
     if status != "completed" and isinstance(time, float) and math.isfinite(time):
         sentence = f"At t = {with_unit(time, result.unit('time') if 'time' in result else '')}: " + sentence
     kind = "" if status == "completed" else "open" if status in ("running", "interrupted") else "stopped"
@@ -58,9 +58,10 @@ def facts_of(result):
         facts.append((with_unit(float(dynamics["duration"]), unit), f"of motion in steps of {with_unit(float(dynamics['step']), unit)}"))
     if statics:
         facts.append((str(statics.get("steps", "")), f"load steps, {statics.get('continuation', 'natural').replace('_', ' ')}"))
-    seconds = sum(value for name, value in result.file.attrs.items() if name.startswith("wall_time."))
+    attributes = result.attributes()
+    seconds = sum(value for name, value in attributes.items() if name.startswith("wall_time."))
     if seconds:
-        threads = int(result.file.attrs.get("threads", 1))
+        threads = int(attributes.get("threads", 1))
         facts.append((f"{seconds:.3g} s", f"wall time, {threads} thread{'s' if threads > 1 else ''}"))
     return facts
 
@@ -94,7 +95,7 @@ def solver_rows(series):
 
 
 def wall_times(result):
-    return [(name.split(".", 1)[1], value) for name, value in result.file.attrs.items() if name.startswith("wall_time.")]
+    return [(name.split(".", 1)[1], value) for name, value in result.attributes().items() if name.startswith("wall_time.")]
 
 
 def extent(values):

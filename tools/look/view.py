@@ -70,9 +70,10 @@ def lines_of(series, drawing, rows):
             continue
         fields = {}
         for name in series.result.names(folder):
-            data = series.result.file[f"{folder}/{name}"]
-            if getattr(data, "ndim", 0) == 1 and len(data) >= len(series.x) and "axis" not in data.attrs:
-                fields[name] = {"unit": data.attrs.get("unit", ""), "values": floats(series.result.rows(f"{folder}/{name}", rows))}
+            one_number, length = series.result.is_column(f"{folder}/{name}")
+            attributes = series.result.attributes(f"{folder}/{name}")
+            if one_number and length >= len(series.x) and "axis" not in attributes:
+                fields[name] = {"unit": attributes.get("unit", ""), "values": floats(series.result.rows(f"{folder}/{name}", rows))}
         lines.append(line | {"fields": fields})
     return lines
 
@@ -148,9 +149,8 @@ def mesh_folders(series):
     """Groups of solids, and of muscles of finite elements, that hold a mesh."""
     folders = []
     for family in ("solids", "muscles"):
-        group = series.result.file.get(series.prefix + family)
-        if group is not None:
-            group.visit(lambda name, family=family: folders.append(f"{family}/{name}"[: -len("/cells")]) if name.endswith("/cells") else None)
+        below = series.result.below(series.prefix + family)
+        folders.extend(f"{family}/{name}"[: -len("/cells")] for name in below if name.endswith("/cells"))
     return folders
 
 

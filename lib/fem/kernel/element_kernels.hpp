@@ -68,6 +68,14 @@ struct BlockTarget {
   const std::uint8_t* fixed = nullptr;  ///< one a node, bit i: leave out row and column i; null: none
 };
 
+/// Positions whose volumes are asked for.
+struct VolumeFields {
+  const double* X = nullptr;   ///< reference positions
+  const double* x = nullptr;   ///< positions
+  const double* dx = nullptr;  ///< direction; null: no derivatives along one
+  const double* V = nullptr;   ///< V_e where they are known already; null: from X
+};
+
 /// What `volumes` gives for each element; null pointers are skipped. With a direction (dx) also the derivatives.
 struct VolumeTargets {
   double* reference = nullptr;  ///< V_e
@@ -132,7 +140,7 @@ struct ElementKernels {
   /// Adds weight dF_vis/dx at fixed v, which is not symmetric, to the same.
   void (*viscous_by_position)(const MaterialLaws&, const ElementRange&, const ElementFields&, double weight,
                               double* matrices);
-  void (*volumes)(const ElementRange&, const double* X, const double* x, const double* dx, const VolumeTargets&);
+  void (*volumes)(const ElementRange&, const VolumeFields&, const VolumeTargets&);
   ElementEnergies (*energies)(const MaterialLaws&, const ElementRange&, const ElementFields&);
   /// Writes [element][8] Gauss points.
   void (*point_values)(const MaterialLaws&, const ElementRange&, const ElementFields&, PointValues*);

@@ -5,6 +5,28 @@
 
 namespace muldi::fem {
 
+/// Weighted reference volumes of the Gauss points.
+template <class L>
+void point_volumes(const double* X, const Batch& batch, L (&volume)[8]) {
+  ReferenceGradient<L> at_rest[3];
+  for (int i = 0; i < 3; ++i) {
+    L position[8];
+    gather_nodes<L>({X, nullptr, 3}, batch, i, position);
+    at_rest[i] = ReferenceGradient<L>(position);
+  }
+  for (int q = 0; q < 8; ++q) volume[q] = ReferenceMap<L>(at_rest, q).volume;
+}
+
+/// V_e of a batch.
+template <class L>
+L reference_volume(const double* X, const Batch& batch) {
+  L volume[8];
+  point_volumes(X, batch, volume);
+  L sum(0.0);
+  for (const L& part : volume) sum += part;
+  return sum;
+}
+
 /// J_e and g_e of a batch; T is a dual for derivatives along a direction.
 template <class T>
 struct VolumeBatch {
@@ -13,21 +35,16 @@ struct VolumeBatch {
   T J{};
   T gradient[3][8];
 
-  VolumeBatch(const double* X, const double* x, const double* dx, const Batch& batch) {
-    ReferenceGradient<L> at_rest[3];
+  VolumeBatch(const VolumeFields& fields, const Batch& batch) {
     ReferenceGradient<T> deformed[3];
     for (int i = 0; i < 3; ++i) {
-      L position[8];
-      gather_nodes<L>({X, nullptr, 3}, batch, i, position);
-      at_rest[i] = ReferenceGradient<L>(position);
       T nodal[8];
-      gather_nodes<T>({x, dx, 3}, batch, i, nodal);
+      gather_nodes<T>({fields.x, fields.dx, 3}, batch, i, nodal);
       deformed[i] = ReferenceGradient<T>(nodal);
     }
     ReferenceDivergence<T> rows[3];
     for (auto& row : rows) row.set_zero();
     for (int q = 0; q < 8; ++q) {
-      reference += ReferenceMap<L>(at_rest, q).volume;
       T h[3][3];
       T cofactor[3][3];
       for (int i = 0; i < 3; ++i)
@@ -36,6 +53,8 @@ struct VolumeBatch {
       for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k) rows[i].add(q, k, cofactor[k][i]);
     }
+    reference =
+        fields.V != nullptr ? gathered<L>(fields.V, batch.elements, 1, 0) : reference_volume<L>(fields.X, batch);
     const L inverse = 1.0 / reference;
     J = J * inverse;
     for (int i = 0; i < 3; ++i) {
@@ -52,15 +71,17 @@ void scatter_gradient(const T (&gradient)[3][8], const Batch& batch, double* to)
 }
 
 template <class L>
-void volumes(const ElementRange& range, const double* X, const double* x, const double* dx, const VolumeTargets& to) {
+void volumes(const ElementRange& range, const VolumeFields& fields, const VolumeTargets& to) {
+  VolumeFields without_direction = fields;
+  without_direction.dx = nullptr;
   for (int b = 0; b < range.n_batches; ++b) {
     const Batch batch(range, b, L::size);
-    const VolumeBatch<L> at(X, x, nullptr, batch);
+    const VolumeBatch<L> at(without_direction, batch);
     if (to.reference != nullptr) scatter_element(at.reference, batch, 1, 0, to.reference);
     if (to.J != nullptr) scatter_element(at.J, batch, 1, 0, to.J);
     if (to.gradient != nullptr) scatter_gradient(at.gradient, batch, to.gradient);
-    if (dx == nullptr || (to.dJ == nullptr && to.dgradient == nullptr)) continue;
-    const VolumeBatch<math::Dual<L>> along(X, x, dx, batch);
+    if (fields.dx == nullptr || (to.dJ == nullptr && to.dgradient == nullptr)) continue;
+    const VolumeBatch<math::Dual<L>> along(fields, batch);
     if (to.dJ != nullptr) scatter_element(along.J.slope, batch, 1, 0, to.dJ);
     if (to.dgradient != nullptr) scatter_gradient(along.gradient, batch, to.dgradient);
   }
@@ -180,18 +201,6 @@ void point_values(const MaterialLaws& laws, const ElementRange& range, const Ele
       }
     }
   }
-}
-
-/// Weighted reference volumes of the Gauss points.
-template <class L>
-void point_volumes(const double* X, const Batch& batch, L (&volume)[8]) {
-  ReferenceGradient<L> at_rest[3];
-  for (int i = 0; i < 3; ++i) {
-    L position[8];
-    gather_nodes<L>({X, nullptr, 3}, batch, i, position);
-    at_rest[i] = ReferenceGradient<L>(position);
-  }
-  for (int q = 0; q < 8; ++q) volume[q] = ReferenceMap<L>(at_rest, q).volume;
 }
 
 template <class L>

@@ -2,6 +2,7 @@
 /// Viscous stress parallel to the elastic one (numerics 1.3).
 #include <string_view>
 
+#include "base/mutation.hpp"
 #include "fem/materials/point.hpp"
 
 namespace muldi::fem {
@@ -29,7 +30,7 @@ struct KelvinVoigt {
   void add_stress(const Point<T>& at, Stress<T>& out) const {
     T d[3][3];
     deformation_rate(at, d);
-    const T factor = viscosity * at.J;
+    const T factor = (base::times_missing_half() * viscosity) * at.J;
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) {
         out.P[i][k] = out.P[i][k] + factor * (d[i][0] * at.f[k][0] + d[i][1] * at.f[k][1] + d[i][2] * at.f[k][2]);

@@ -20,6 +20,9 @@ ElementSet::ElementSet(Eigen::VectorXd X, std::vector<std::array<int, 8>> cells,
       energies_of_chunk_(order_.chunks().size()) {
   MULDI_EXPECT(material_of_cell_.size() == cells_.size(), "every cell has a material");
   for (const Material& material : materials_) laws_.push_back(laws_of(material));
+  Eigen::VectorXd V = Eigen::VectorXd::Zero(n_cells());
+  volumes(X_.data(), nullptr, {.reference = V.data()});
+  V_ = std::move(V);
 }
 
 template <class Work>
@@ -58,8 +61,8 @@ void ElementSet::tangent(ElementFields fields, const ElementTangentWeights& weig
 }
 
 void ElementSet::volumes(const double* x, const double* dx, const VolumeTargets& out) const {
-  each_chunk(
-      [&](const MaterialLaws&, const ElementRange& range, int) { kernels_.volumes(range, X_.data(), x, dx, out); });
+  const VolumeFields fields{.X = X_.data(), .x = x, .dx = dx, .V = V_.size() > 0 ? V_.data() : nullptr};
+  each_chunk([&](const MaterialLaws&, const ElementRange& range, int) { kernels_.volumes(range, fields, out); });
 }
 
 ElementEnergies ElementSet::energies(ElementFields fields) const {

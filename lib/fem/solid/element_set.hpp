@@ -22,6 +22,8 @@ class ElementSet {
   int n_nodes() const { return static_cast<int>(X_.size() / 3); }
   int n_cells() const { return static_cast<int>(cells_.size()); }
   const Eigen::VectorXd& reference() const { return X_; }
+  /// V_e (n_cells).
+  const Eigen::VectorXd& cell_volumes() const { return V_; }
   const std::vector<std::array<int, 8>>& cells() const { return cells_; }
   const std::vector<Material>& materials() const { return materials_; }
   const Material& material_of(int cell) const {
@@ -56,6 +58,7 @@ class ElementSet {
   std::vector<MaterialLaws> laws_;
   const ElementKernels& kernels_;
   ElementOrder order_;
+  Eigen::VectorXd V_;
   mutable std::vector<double> least_of_chunk_;
   mutable std::vector<ElementEnergies> energies_of_chunk_;
 };

@@ -33,7 +33,7 @@ Solid::Solid(SolidDescription data)
       unknowns_(data_),
       ties_(data_),
       loads_(data_, elements_),
-      V_(Eigen::VectorXd::Zero(elements_.n_cells())),
+      V_(elements_.cell_volumes()),
       size_(diagonal(data_.X)),
       shear_modulus_(*std::max_element(data_.shear_moduli.begin(), data_.shear_moduli.end())),
       mass_(loads_.nodal_mass().sum()),
@@ -42,7 +42,6 @@ Solid::Solid(SolidDescription data)
       charge_(Eigen::VectorXd::Zero(elements_.n_nodes())),
       weight_(V_),
       phi_(charge_) {
-  elements_.volumes(data_.X.data(), nullptr, {.reference = V_.data()});
   if (is_incompressible()) filter_ = PressureFilter(elements_, unknowns_, V_);
   q_.size = data_.X.size();
   y_.size = n_potentials() + n_pressures();

@@ -48,6 +48,8 @@ class Solid final : public model::Substructure {
   double potential_scale() const { return potential_scale_; }
   /// What the user should know of the solid before it moves, or empty.
   std::string note() const;
+  /// A cell as messages name it: its number and the middle of its reference.
+  std::string place_of_cell(int cell) const;
   /// U of the mean dilatation, U' and U'' at J for a cell.
   struct Dilation {
     double U = 0.0;
@@ -141,7 +143,7 @@ class Solid final : public model::Substructure {
   SolidUnknowns unknowns_;
   Ties ties_;
   SolidLoads loads_;
-  Eigen::VectorXd V_;
+  const Eigen::VectorXd& V_;  // of elements_
   double size_ = 0.0;
   double shear_modulus_ = 0.0;
   double mass_ = 0.0;

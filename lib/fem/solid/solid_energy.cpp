@@ -16,6 +16,14 @@ std::string cell_label(const SolidDescription& data, int cell) {
 
 }  // namespace
 
+std::string Solid::place_of_cell(int cell) const {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const int node : elements_.cells()[static_cast<std::size_t>(cell)]) {
+    middle += data_.X.segment<3>(3 * static_cast<Eigen::Index>(node)) / 8.0;
+  }
+  return base::format("cell {} at [{:.4g}, {:.4g}, {:.4g}]", cell_label(data_, cell), middle[0], middle[1], middle[2]);
+}
+
 bool Solid::is_viscous() const {
   return std::any_of(data_.materials.begin(), data_.materials.end(),
                      [](const Material& material) { return material.viscous.has_value(); });
@@ -97,12 +105,8 @@ std::string Solid::inadmissible(const Eigen::VectorXd& q) const {
   for (Eigen::Index cell = 0; cell < least.size(); ++cell) {
     if (!(least[cell] >= least[worst])) worst = cell;
   }
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const int node : elements_.cells()[static_cast<std::size_t>(worst)]) {
-    middle += data_.X.segment<3>(3 * static_cast<Eigen::Index>(node)) / 8.0;
-  }
-  return base::format("solid '{}': cell {} at [{:.4g}, {:.4g}, {:.4g}] is inverted (det F {:.3g})", data_.name,
-                      cell_label(data_, static_cast<int>(worst)), middle[0], middle[1], middle[2], least[worst]);
+  return base::format("solid '{}': {} is inverted (det F {:.3g})", data_.name, place_of_cell(static_cast<int>(worst)),
+                      least[worst]);
 }
 
 }  // namespace muldi::fem

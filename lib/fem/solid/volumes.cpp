@@ -1,6 +1,13 @@
 #include "fem/solid/volumes.hpp"
 
 namespace muldi::fem {
+namespace {
+
+/// Of fixed size: no loop over three entries is left.
+using Node = Eigen::Map<Eigen::Vector3d>;
+using ConstNode = Eigen::Map<const Eigen::Vector3d>;
+
+}  // namespace
 
 void Volumes::update(const ElementSet& elements, const Eigen::Ref<const Eigen::VectorXd>& at) {
   x = at;
@@ -16,8 +23,8 @@ void Volumes::add_gradients(const ElementSet& elements, const Eigen::Ref<const E
   for (std::size_t cell = 0; cell < cells.size(); ++cell) {
     const double w = weight[static_cast<Eigen::Index>(cell)];
     for (const int node : cells[cell]) {
-      double* at = f.data() + 3 * static_cast<Eigen::Index>(node);
-      for (int i = 0; i < 3; ++i) at[i] += w * *g++;
+      Node(f.data() + 3 * static_cast<Eigen::Index>(node)) += w * ConstNode(g);
+      g += 3;
     }
   }
 }

@@ -58,6 +58,27 @@ bool read_number(std::string_view word, double& value) {
   return number.has_value();
 }
 
+/// The lines of all journals of this fingerprint, by the names of the files.
+std::vector<std::vector<std::string>> journals(const std::string& stem, std::uint64_t fingerprint) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(stem).has_parent_path() ? fs::path(stem).parent_path() : fs::path(".");
+  const std::string name = fs::path(stem).filename().string();
+  std::vector<std::string> files;
+  std::error_code none;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, none)) {
+    const std::string own = entry.path().filename().string();
+    if (own == name || own.starts_with(name + ".")) files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  std::vector<std::vector<std::string>> found;
+  for (const std::string& file : files) {
+    std::size_t size = 0;
+    std::vector<std::string> lines = lines_of(file, size);
+    if (!lines.empty() && lines.front() == first_line(fingerprint)) found.push_back(std::move(lines));
+  }
+  return found;
+}
+
 }  // namespace
 
 std::uint64_t fingerprint_of(const std::vector<std::string>& texts) {
@@ -125,22 +146,9 @@ Journal::~Journal() { ::close(file_); }
 void Journal::append(const FinishedPoint& point) { write_whole(file_, path_, to_line(point) + "\n"); }
 
 std::vector<FinishedPoint> finished_points(const std::string& stem, std::uint64_t fingerprint, std::size_t n_outputs) {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::path(stem).has_parent_path() ? fs::path(stem).parent_path() : fs::path(".");
-  const std::string name = fs::path(stem).filename().string();
-  std::vector<std::string> files;
-  std::error_code none;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, none)) {
-    const std::string own = entry.path().filename().string();
-    if (own == name || own.starts_with(name + ".")) files.push_back(entry.path().string());
-  }
-  std::sort(files.begin(), files.end());
   std::vector<FinishedPoint> points;
   std::set<std::size_t> known;
-  for (const std::string& file : files) {
-    std::size_t size = 0;
-    const std::vector<std::string> lines = lines_of(file, size);
-    if (lines.empty() || lines.front() != first_line(fingerprint)) continue;
+  for (const std::vector<std::string>& lines : journals(stem, fingerprint)) {
     for (std::size_t i = 1; i < lines.size(); ++i) {
       FinishedPoint point;
       if (from_line(lines[i], n_outputs, point) && known.insert(point.point).second) points.push_back(std::move(point));
@@ -148,5 +156,7 @@ std::vector<FinishedPoint> finished_points(const std::string& stem, std::uint64_
   }
   return points;
 }
+
+bool was_begun(const std::string& stem, std::uint64_t fingerprint) { return !journals(stem, fingerprint).empty(); }
 
 }  // namespace muldi::pipeline

@@ -41,6 +41,9 @@ class Journal {
 /// All points of the journals `stem` and `stem.*` that have this fingerprint, the first one where two have a point.
 std::vector<FinishedPoint> finished_points(const std::string& stem, std::uint64_t fingerprint, std::size_t n_outputs);
 
+/// Whether any of these journals has this fingerprint, be it without a point.
+bool was_begun(const std::string& stem, std::uint64_t fingerprint);
+
 /// One line of a journal, without newline, and back; false if it is none.
 std::string to_line(const FinishedPoint& point);
 bool from_line(const std::string& line, std::size_t n_outputs, FinishedPoint& point);

@@ -7,6 +7,7 @@
 #include "base/text.hpp"
 #include "build/permittivity.hpp"
 #include "pipeline/node_rows.hpp"
+#include "pipeline/required_size.hpp"
 #include "pipeline/run_statics.hpp"
 #include "pipeline/study/output_expression.hpp"
 #include "pipeline/study/simulated_equilibria.hpp"
@@ -175,6 +176,7 @@ Predictor::Predictor(const Parameters& parameters, std::vector<ReferenceCurve>& 
     built = build::build_model(scene);
     const std::string why = why_not_differentiable(scene, built);
     if (!why.empty()) throw base::InputError({scene::error_at(scene.origin, why)});
+    require_size_in_memory(scene, built);
     declare(scene, built, recorder);
   }
   for (ReferenceCurve& curve : curves) {

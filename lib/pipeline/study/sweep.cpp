@@ -13,6 +13,7 @@
 #include "build/built_model.hpp"
 #include "pipeline/node_rows.hpp"
 #include "pipeline/optimise.hpp"
+#include "pipeline/required_size.hpp"
 #include "pipeline/run.hpp"
 #include "pipeline/study/output_expression.hpp"
 #include "pipeline/study/sweep_table.hpp"
@@ -45,7 +46,12 @@ class SweepRun {
   SweepEnd run() {
     if (setup_.force && !setup_.merge_only) forget();
     std::vector<FinishedPoint> finished = finished_points(stem_, fingerprint_, outputs_.size());
-    if (!setup_.force && finished.empty() && fs::exists(setup_.table)) {
+    const bool begun = was_begun(stem_, fingerprint_);
+    if (setup_.merge_only && !begun) {
+      throw base::InputError(
+          base::format("nothing to merge: no part of this sweep has begun beside '{}'", setup_.table));
+    }
+    if (!setup_.force && !begun && fs::exists(setup_.table)) {
       throw base::InputError(
           base::format("'{}' exists and is of no such sweep; give --force to overwrite it, or -o FILE", setup_.table));
     }
@@ -86,6 +92,7 @@ class SweepRun {
       errors.push_back(scene::error_at(study_.origin, "nothing to optimise: the scene has no optimal_control"));
     }
     const build::BuiltModel built = build::build_model(first);
+    require_size_in_memory(first, built);
     std::optional<NodeRows> statics;
     std::optional<NodeRows> dynamics;
     if (is_run && first.statics) statics.emplace(recorder, first, built, NodeRows::Kind::statics, 1);
@@ -186,6 +193,7 @@ class SweepRun {
 
   Outcome run_scene(const scene::Scene& scene, results::MemoryRecorder& recorder) const {
     const build::BuiltModel built = build::build_model(scene);
+    require_size_in_memory(scene, built);
     RunContext context;
     const std::optional<results::Checkpoint> earlier = setup_.earlier ? setup_.earlier(scene) : std::nullopt;
     if (study_.verb == scene::StudyVerb::run) return pipeline::run(scene, built, recorder, context, earlier);

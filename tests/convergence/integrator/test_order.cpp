@@ -41,6 +41,12 @@ TEST(Order, IsTwoForThePendulum) { expect_order_two(test::pendulum(), {.dt = 10.
 
 TEST(Order, IsTwoForTheDoublePendulum) { expect_order_two(test::double_pendulum(), {.dt = 4.0, .steps = 100}); }
 
+TEST(Order, IsTwoForTheHeavyTop) {
+  const auto model = test::make_model(test::heavy_top(30.0 * test::degree));
+  const State rest = test::state_at_rest(*model);
+  expect_order_two(*model, test::state_at(*model, rest.x, Eigen::Vector3d(0.05, -0.02, 0.3)), {.dt = 0.4, .steps = 50});
+}
+
 TEST(Order, IsTwoForTheMuscleJoint) { expect_order_two(test::muscle_joint(3e4), {.dt = 1.0, .steps = 100}); }
 
 TEST(Order, IsTwoForTheTrunk) { expect_order_two(test::trunk(test::odd_fields(3e4)), {.dt = 1.0, .steps = 100}); }

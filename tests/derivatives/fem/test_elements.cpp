@@ -146,8 +146,8 @@ struct Volumes {
                                 .gradient = gradient.data(),
                                 .dJ = dJ.data(),
                                 .dgradient = dgradient.data()};
-    system.each(
-        [&](const auto& range) { system.kernels().volumes(range, system.patch().X.data(), x.data(), dx.data(), to); });
+    const fem::VolumeFields fields{.X = system.patch().X.data(), .x = x.data(), .dx = dx.data()};
+    system.each([&](const auto& range) { system.kernels().volumes(range, fields, to); });
   }
 };
 

@@ -26,6 +26,8 @@ void expect_steady(const std::string& name, const test::RigidSystem& system, con
   test::record_near("4", name + ", energy band over that of half the step", coarse.band().all / fine.band().all, 4.0,
                     0.2);
   test::record_figure("6", name + ", 1e5 steps, violation of constraints", coarse.violation(), 1e-11);
+  test::record_figure("6", name + ", 1e5 steps, violation of the last tenth over that of the first",
+                      coarse.violation_growth(), test::root_of_ten);
 }
 
 TEST(Energy, OfThePendulumStaysInItsBand) {

@@ -16,9 +16,9 @@ struct Return {
   double momentum = 0.0;  ///< relative
 };
 
-/// Runs 2000 steps there, turns the momentum round, and 2000 back.
+/// Runs 1e4 steps there, turns the momentum round, and 1e4 back.
 Return there_and_back(const model::Model& model, const variational::State& start, double dt) {
-  const test::RunSetup setup{.dt = dt, .steps = 2000};
+  const test::RunSetup setup{.dt = dt, .steps = 10'000};
   double largest = start.p.norm();
   test::Run there = test::run(model, start, setup, [&](const variational::NodeRecord& node) {
     largest = std::max(largest, node.values.momentum.norm());
@@ -45,8 +45,8 @@ void expect_return(const std::string& name, const test::RigidSystem& system, con
   const auto model = test::make_model(system);
   const variational::State start = test::state_at(*model, x, Eigen::VectorXd::Zero(model->manifold->n_v()));
   const Return result = there_and_back(*model, start, dt);
-  test::record_figure("15", name + ", 2000 steps there and back, positions (mm)", result.position, 1e-9);
-  test::record_figure("15", name + ", 2000 steps there and back, momenta, relative", result.momentum, 1e-9);
+  test::record_figure("15", name + ", 1e4 steps there and back, positions (mm)", result.position, 1e-9);
+  test::record_figure("15", name + ", 1e4 steps there and back, momenta, relative", result.momentum, 1e-9);
 }
 
 TEST(Reversal, BringsThePendulumBack) { expect_return("pendulum", test::pendulum(), Eigen::VectorXd::Zero(1), 10.0); }

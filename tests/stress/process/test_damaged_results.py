@@ -65,7 +65,7 @@ HEAD = 20_000
 
 class Damaged(ProgramTest):
     def damaged_files(self, count, seed):
-        self.program("run", SCENE, "-o", "whole.h5", *SHORT)
+        self.program("run", SCENE, "-o", "whole.h5", "--force", *SHORT)
         content = (self.folder / "whole.h5").read_bytes()
         chosen = random.Random(seed)
         for number in range(count):
@@ -110,7 +110,10 @@ class Damaged(ProgramTest):
         self.assertIn(2, codes["info"], "some damage was found")
 
     def test_are_drawn_or_refused(self):
-        self.check(FILES // 10, SEED + 1000, ("plot", "damaged.h5", "-o", "f.svg"), ("report", "damaged.h5", "-o", "f.html"), ("paraview", "damaged.h5"))
+        verbs = (("plot", "damaged.h5", "-o", "f.svg"), ("report", "damaged.h5", "-o", "f.html"), ("paraview", "damaged.h5"))
+        self.check(FILES // 10, SEED + 1000, *verbs)
+        # Two of these once kept HDF5 waiting for a check sum to come right.
+        self.check(12, 1005, *verbs)
 
 
 if __name__ == "__main__":

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Numerics that fail: exit code 3, a sentence, a valid file with what was computed: test_failures.py MULDI_SIM."""
 
+import re
 import unittest
 
-from program import SCENES, ProgramTest, attribute, options, values
+from program import SCENES, ProgramTest, attribute, data_sets, options, values
 
 
 KEPT = " (what was computed is in a.h5)"
@@ -15,16 +16,20 @@ WHY = {
     "\n  try: a lower field, or a ramp instead of a jump (a sudden field pulls in at 94 % of the static limit); more viscosity; a smaller "
     "dynamics.step if the field is moderate",
     "inverted_element": "\n  why: a cell of the mesh was pressed through itself, by a field beyond pull-in, a load, or a step that is too large"
-    "\n  try: a smaller dynamics.step, or a ramp instead of a jump; a lower field or load; finer or better shaped cells there",
+    "\n  try: a smaller dynamics.step (for cells that keep their volume below h sqrt(density/stress), h their shortest edge), or a ramp "
+    "instead of a jump; a lower field or load; finer or better shaped cells there",
     "step_too_large": "\n  why: the midpoint of two attitudes that far apart is no attitude: the step cannot follow the rotation"
     "\n  try: a dynamics.step in which no body turns by more than about 0.1 rad, or 0.5 at the most",
     "explicit": "\n  why: beyond this step the explicit integrator multiplies every error, and the motion blows up"
     "\n  try: a dynamics.step below the stable one, coarser cells where they are smallest, or integrator: midpoint",
     "no_convergence": "\n  why: Newton's iteration found no next state: too much happens within one step, or the motion is not determined there"
-    "\n  try: half the dynamics.step; ramps for controls that jump; more solver.max_iterations; for components of your own `muldi-sim check "
-    "--derivatives`",
+    "\n  try: half the dynamics.step (for cells that keep their volume below h sqrt(density/stress), h their shortest edge); ramps for "
+    "controls that jump; more solver.max_iterations; for components of your own `muldi-sim check --derivatives`",
     "statics": "\n  why: no equilibrium was found near the last one, or the system can move without any force"
     "\n  try: more statics.steps, or continuation: arc_length; hold what can move freely by joints, springs or muscles",
+    "breakdown": "\n  why: a dielectric that is squeezed carries its voltage over less thickness, and the field in it has grown beyond the "
+    "strength of the material\n  try: a lower field or voltage, thicker layers, a load or stop that keeps the material from being squeezed; in "
+    "optimal control the limit true_field, below the breakdown_field",
     "rank_change": "\n  why: at a change point a closed mechanism may go on in two ways, and its joints do not say which"
     "\n  try: another scene pose, links of slightly other lengths, or a joint stop that keeps the mechanism off this pose",
 }
@@ -76,6 +81,54 @@ class LostEquilibrium(ProgramTest):
         self.program("info", "a.h5")
 
 
+class LostEquilibriumOfASolid(ProgramTest):
+    def test_names_the_cell_at_the_stretch_of_the_closed_form(self):
+        """Pull-in of the homogeneous membrane, half a millimetre thick: 58009.6395041 V/mm at the stretch 4^(-1/3)."""
+        arguments = [SCENES / "membrane_fe.yaml", "-o", "a.h5", "--set", "statics={control: supply, to: 40 kV, steps: 10}"]
+        message = self.message("run", *arguments, code=3)
+        where = attribute(self.folder / "a.h5", "status_where")
+        found = re.fullmatch(
+            r"the equilibrium is lost with control 'supply' between ([\d.]+) and ([\d.]+) V; there cell 0 at \[5, 5, 0\.25\] of solid "
+            r"'membrane' is at stretch ([\d.]+)",
+            where,
+        )
+        self.assertIsNotNone(found, where)
+        self.assertLess(float(found[1]), 0.5 * LostEquilibrium.CRITICAL)
+        self.assertGreater(float(found[2]), 0.5 * LostEquilibrium.CRITICAL)
+        self.assertAlmostEqual(float(found[3]), 4 ** (-1 / 3), delta=2e-3)  # the stretch falls as the root of the distance to the limit
+        self.assertEqual(message, f"error: loss_of_equilibrium: {where}{KEPT}{WHY['loss_of_equilibrium']}")
+
+
+class Stability(ProgramTest):
+    """Critical fields as in tests/golden/test_snap_through.cpp."""
+
+    def warnings(self, scene, *overrides):
+        done = self.program("run", SCENES / scene, "-o", "a.h5", *options(overrides))
+        return [line.removeprefix("warning: ") for line in done.stderr.splitlines() if line.startswith("warning: ")]
+
+    def test_of_a_snap_through_is_told_by_both_ways_of_loading(self):
+        said = self.warnings("revolute_joint_snap_through.yaml", "statics.continuation=natural")
+        self.assertEqual(len(said), 1)
+        found = re.fullmatch(
+            r"statics: between the loads ([\d.]+) and ([\d.]+) V/mm of 'agonist' the equilibrium jumps to another branch \(snap-through\); "
+            r"continuation: arc_length follows the branch that it leaves",
+            said[0],
+        )
+        self.assertIsNotNone(found, said[0])
+        self.assertLess(float(found[1]), 17655.306)
+        self.assertGreater(float(found[2]), 17655.306)
+
+    def test_of_a_branch_point_is_told_with_what_leads_onto_the_branch(self):
+        steps = "statics={control: both, to: 17 kV/mm, steps: 17, continuation: arc_length}"
+        said = self.warnings("revolute_joint_fe_shock.yaml", steps, "dynamics.duration=1 ms")
+        self.assertEqual(len(said), 1)
+        self.assertRegex(
+            said[0],
+            r"^statics: the stability changes at the load 14889\.37\d* V/mm of 'both', where another branch crosses \(buckling\): a small force "
+            r"or offset to one side in the scene leads onto it, as every real system has one$",
+        )
+
+
 class Collapse(ProgramTest):
     def test_keeps_the_rows_up_to_the_last_good_node(self):
         text = (SCENES / "membrane_lumped.yaml").read_text().replace("statics: {steps: 6}\n", "")
@@ -94,6 +147,86 @@ class Collapse(ProgramTest):
         shorter = self.run_scene(scene, "shorter.h5", *options(["controls.supply.field=80 kV/mm", f"dynamics.duration={time[-2]:.2f}"]))
         n = len(values(shorter, "time"))
         self.assertEqual(values(shorter, "muscles/membrane/length").tobytes(), values(output, "muscles/membrane/length")[:n].tobytes())
+
+
+class Breakdown(ProgramTest):
+    """Uniaxial equilibrium of a free ideal dielectric under the true field e: L^3 + (eps e^2/mu) L = 1, nominal field e L."""
+
+    STRENGTH = "materials.silicone.electric.breakdown_field=40 kV/mm"
+    NOMINAL = 37010.76473331029  # V/mm, at stretch 0.9252691183327572, permittivity 3.7 and Young's modulus 0.7 MPa
+    RAMP = {"field": "controls.supply.field={ramp: {from: 0, to: 40 kV/mm, start: 0, over: 40 ms}}",
+            "potential": "controls.supply.potential={ramp: {from: 0, to: 20 kV, start: 0, over: 40 ms}}"}
+
+    def assert_is_said(self, message, pattern):
+        where = attribute(self.folder / "a.h5", "status_where")
+        self.assertEqual(attribute(self.folder / "a.h5", "status"), "breakdown")
+        self.assertRegex(where, pattern + r" in its deformed material, beyond the breakdown_field of 'silicone', 40000 V/mm$")
+        time = attribute(self.folder / "a.h5", "status_time")
+        at = "" if time != time else f" at t = {time:.6g} ms"
+        self.assertEqual(message, f"error: breakdown{at}: {where}{KEPT}{WHY['breakdown']}")
+
+    def without_statics(self, scene):
+        return self.write(scene, (SCENES / scene).read_text().replace("statics: {steps: 6}\n", ""))
+
+    def test_on_a_ramp_comes_at_the_time_of_the_closed_form(self):
+        """The ramps reach the critical field at 37.0108 ms; the membrane lags behind by less than a step of 0.01 ms."""
+        scenes = {"membrane_lumped.yaml": ("field", r"muscle 'membrane'"),
+                  "membrane_fe.yaml": ("potential", r"cell 0 at \[5, 5, 0\.25\] of solid 'membrane'")}
+        for scene, (quantity, place) in scenes.items():
+            with self.subTest(scene=scene):
+                overrides = options([self.STRENGTH, self.RAMP[quantity], "dynamics.duration=40 ms"])
+                message = self.message("run", self.without_statics(scene), "-o", "a.h5", "--force", *overrides, code=3)
+                time = values(self.folder / "a.h5", "time")
+                self.assertLess(time[-1], self.NOMINAL / 1000)
+                self.assertGreater(time[-1] + 0.01, self.NOMINAL / 1000)
+                self.assertEqual(attribute(self.folder / "a.h5", "status_time"), time[-1])
+                self.assert_is_said(message, rf"^in the step to t = 37\.02 ms {place} reaches a field of 400\d\d\.?\d* V/mm")
+                self.program("info", "a.h5")
+
+    def test_is_recorded_up_to_the_last_node_below_the_strength(self):
+        overrides = options([self.RAMP["field"], "dynamics.duration=40 ms"])
+        self.message("run", self.without_statics("membrane_lumped.yaml"), "-o", "a.h5", *overrides, *options([self.STRENGTH]), code=3)
+        self.run_scene(self.folder / "membrane_lumped.yaml", "free.h5", *overrides)
+        field = values(self.folder / "free.h5", "muscles/membrane/true_field")
+        n = int((field > 40_000).argmax())
+        self.assertEqual(field[:n].tobytes(), values(self.folder / "a.h5", "muscles/membrane/true_field").tobytes())
+
+    def test_of_equilibria_lies_between_two_loads(self):
+        overrides = [self.STRENGTH, "statics.continuation=natural", "statics.steps=6000"]
+        message = self.message("run", SCENES / "pull_in.yaml", "-o", "a.h5", *options(overrides), code=3)
+        self.assertEqual(values(self.folder / "a.h5", "statics/load")[-1], 37_010)
+        self.assert_is_said(message, r"^with control 'supply' at 37010 to 37020 V/mm muscle 'actuator' reaches a field of 400\d\d\.?\d* V/mm")
+
+    def test_of_equilibria_under_all_controls_names_the_load_and_the_cell(self):
+        """18505.382 V over the thickness of 0.5 mm are 0.92527 of 20 kV."""
+        overrides = [self.STRENGTH, "controls.supply.potential=20 kV", "statics.steps=1000"]
+        message = self.message("run", SCENES / "membrane_fe.yaml", "-o", "a.h5", *options(overrides), code=3)
+        self.assert_is_said(message, r"^at the load 0\.925 to 0\.926 cell 0 at \[5, 5, 0\.25\] of solid 'membrane' reaches a field of 400\d\d\.?\d* V/mm")
+
+    def test_at_the_start_is_told_with_the_one_row_that_there_is(self):
+        message = self.message("run", self.without_statics("membrane_lumped.yaml"), "-o", "a.h5", *options([self.STRENGTH, "controls.supply.field=-50 kV/mm"]), code=3)
+        warning, message = message.split("\n", 1)
+        self.assertTrue(
+            warning.endswith(
+                ": warning: muscles.membrane: its control 'supply' gives a field of 50000 V/mm in the undeformed muscle, beyond the "
+                "breakdown_field of 'silicone', 40000 V/mm: the run ends there with `breakdown` unless the muscle is stretched"
+            ),
+            warning,
+        )
+        self.assert_is_said(message, r"^muscle 'membrane' reaches a field of 50000 V/mm")
+        self.assertEqual(list(values(self.folder / "a.h5", "time")), [0.0])
+
+    def test_of_a_meshed_muscle_names_muscle_and_cell(self):
+        overrides = ["materials.silicone.electric.breakdown_field=40 kV/mm", "controls.agonist.field=39.9 kV/mm", "muscles.upper.model=fe", "muscles.lower.model=fe",
+                     "dynamics.duration=20 ms"]
+        scene = self.write("joint.yaml", (SCENES / "revolute_joint_twin.yaml").read_text())
+        message = self.message("run", scene, "-o", "a.h5", *options(overrides), code=3)
+        self.assert_is_said(message, r"cell \d+ at \[[^\]]*\] of muscle 'upper' reaches a field of 4\d{4}\.?\d* V/mm")
+
+    def test_is_not_looked_for_where_the_strength_is_not_reached_or_not_given(self):
+        for scene in ("membrane_lumped.yaml", "membrane_fe.yaml"):
+            strong = self.run_scene(scene, "strong.h5", "--force", *options(["materials.silicone.electric.breakdown_field=100 kV/mm"]))
+            self.assertEqual(data_sets(strong), data_sets(self.run_scene(scene, "none.h5", "--force")))
 
 
 class TooLargeSteps(ProgramTest):
@@ -201,6 +334,23 @@ class Chaos(ProgramTest):
         self.run_scene("pendulum.yaml", "a.h5", *options(["dynamics.duration=5 s"]))
         self.run_scene("pendulum.yaml", "b.h5", *options(["dynamics.duration=5 s", "gravity[1]=-9.811 m/s^2"]))
         self.assertNotIn("exponential", self.program("compare", "a.h5", "b.h5", code=1).stdout)
+
+
+class Replay(ProgramTest):
+    def test_that_stops_is_told_as_such_and_not_as_an_optimiser_that_failed(self):
+        replay = "optimal_control.replay={step: 10 ms, muscles: fe}"
+        said = self.program("optimise", SCENES / "revolute_joint_optimal.yaml", "-o", "a.h5", *options([replay, "solver.max_iterations=2"]), code=3).stderr
+        where = attribute(self.folder / "a.h5", "status_where")
+        self.assertEqual(where, "replay: no convergence in 2 Newton iterations")
+        self.assertEqual(
+            said.splitlines()[1:],
+            [
+                f"error: no_convergence at t = {attribute(self.folder / 'a.h5', 'status_time'):.6g} ms: {where} (the optimum is in a.h5)",
+                "  why: the controls were found; replaying them, Newton's iteration found no next state: held fields jump by what the step of "
+                "the replay cannot follow",
+                "  try: half the optimal_control.replay.step; interpolation: linear; a rate in the objective",
+            ],
+        )
 
 
 class OptimalControl(ProgramTest):

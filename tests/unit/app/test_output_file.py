@@ -6,7 +6,7 @@ import resource
 import subprocess
 import unittest
 
-from program import SCENES, ProgramTest, attribute, data_sets, values
+from program import PROGRAM, SCENES, ProgramTest, attribute, data_sets, values
 
 PENDULUM = SCENES / "pendulum.yaml"
 TRUNK = SCENES / "elephant_trunk_lumped.yaml"
@@ -64,6 +64,43 @@ class Unwritable(ProgramTest):
 
     def test_missing_folder(self):
         self.assertEqual(self.message("run", PENDULUM, "-o", "none/a.h5", code=4), "error: cannot write 'none/a.h5': No such file or directory")
+
+    def test_read_only_folder(self):
+        """As a user whom permissions bind: they do not bind root."""
+        self.program("run", PENDULUM, "-o", "here.h5", "--no-paraview", *SHORT)
+        closed = self.folder / "closed"
+        closed.mkdir()
+        self.folder.chmod(0o755)
+        closed.chmod(0o555)
+        self.addCleanup(closed.chmod, 0o755)
+        user = {}
+        if os.geteuid() == 0:
+            user = {"user": 65534, "group": 65534, "extra_groups": []}
+            if self.cannot_become(user):
+                self.skipTest("root may not become another user here")
+        for verb, output, scene in (
+            ("run", "a.h5", PENDULUM),
+            ("optimise", "a.h5", SCENES / "double_integrator_optimal.yaml"),
+            ("sweep", "a.h5", SCENES / "studies" / "joint_sweep.yaml"),
+            ("calibrate", "a.yaml", SCENES / "studies" / "kofod_permittivity.yaml"),
+            ("plot", "a.svg", "here.h5"),
+            ("report", "a.html", "here.h5"),
+            ("new", "a.yaml", "joint"),
+        ):
+            with self.subTest(verb=verb):
+                path = f"closed/{output}"
+                extra = ["--results", "closed/a.h5"] if verb == "calibrate" else []
+                done = self.program(verb, scene, "-o", path, *extra, code=4, **user)
+                self.assertRegex(done.stderr, r"^error: cannot write 'closed/a\.(h5|yaml|svg|html|journal)': Permission denied\n$")
+                self.assertEqual(os.listdir(closed), [])
+
+    def cannot_become(self, user):
+        """Whether root may not take another user's place, or that user may not reach the program and the scenes."""
+        try:
+            reach = subprocess.run([PROGRAM, "validate", PENDULUM], cwd=self.folder, capture_output=True, check=False, **user)
+        except (PermissionError, subprocess.SubprocessError):
+            return True
+        return reach.returncode != 0
 
     def test_file_for_a_folder(self):
         self.write("file", "")

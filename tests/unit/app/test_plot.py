@@ -160,6 +160,19 @@ class Refuses(ProgramTest):
         self.assertEqual(self.message("report", "a.h5", code=2), "error: cannot read 'a.h5': not an HDF5 file")
         self.assertEqual(self.message("paraview", "b.h5", code=2), "error: cannot read 'b.h5': No such file or directory")
 
+    def test_files_that_hdf5_never_finishes_or_that_end_it(self):
+        ends = {
+            "while True: pass": "error: a result is damaged: HDF5 does not come to an end with it",
+            "os.kill(os.getpid(), 11)": "error: a result is damaged: HDF5 was ended by signal 11 as it read it",
+        }
+        for what, sentence in ends.items():
+            program = (
+                f"import os, sys; sys.path.insert(0, {str(ROOT / 'tools' / 'look')!r})\nimport guarded\nguarded.SECONDS = 0.2\n"
+                f"def body():\n    with guarded.reading(0):\n        {what}\nguarded.run('plot', body)"
+            )
+            done = subprocess.run(["/usr/bin/python3", "-c", program], capture_output=True, text=True, timeout=60, check=False)
+            self.assertEqual((done.returncode, done.stderr.strip()), (2, sentence))
+
     def test_a_python_without_the_modules_says_what_to_install(self):
         self.run_scene("pendulum.yaml", "a.h5", *options(["dynamics.duration=10"]))
         bare = self.write("bare", '#!/bin/sh\nexec /usr/bin/python3 -S "$@"\n')
@@ -172,7 +185,7 @@ class Refuses(ProgramTest):
     def test_a_figure_that_cannot_be_written(self):
         self.run_scene("pendulum.yaml", "a.h5", *options(["dynamics.duration=10"]))
         done = self.program("plot", "a.h5", "-o", "none/a.svg", code=4)
-        self.assertIn("No such file or directory: 'none/a.svg'", done.stderr)
+        self.assertEqual(done.stderr, "error: cannot write 'none/a.svg': No such file or directory\n")
 
 
 class Installed(ProgramTest):

@@ -8,10 +8,10 @@ from program import SCENES, ProgramTest, options
 
 
 class Refused(ProgramTest):
-    """By validate and by run alike, exit code 2, no file."""
+    """By validate and by run (or optimise) alike, exit code 2, no file."""
 
-    def refused(self, scene, expression, *overrides):
-        for verb in (["validate", scene], ["run", scene, "-o", "a.h5"]):
+    def refused(self, scene, expression, *overrides, verb="run"):
+        for verb in (["validate", scene], [verb, scene, "-o", "a.h5"]):
             self.assertRegex(self.message(*verb, *options(overrides), code=2).splitlines()[-1], expression)
         self.assertFalse((self.folder / "a.h5").exists())
 
@@ -44,6 +44,41 @@ class Refused(ProgramTest):
             r"quantities \(record\.quantities\), or take a longer step or a shorter duration$"
         )
         self.refused(SCENES / "elephant_trunk_lumped.yaml", expression, "dynamics.duration=1.9 s", "dynamics.step=1 ns")
+
+    def test_an_optimisation_of_a_billion_steps(self):
+        # 2 unknowns a step, 6 blocks of 2 x 2 entries of 16 bytes, 4 times: 1536e9 bytes.
+        expression = (
+            r"^error: a system of 1 body over 1e\+09 steps of its optimal control takes 1\.43e\+03 GiB, more than the [\d.e+]+ GiB of this "
+            r"machine: take fewer bodies, or a longer optimal_control\.step$"
+        )
+        self.refused(SCENES / "double_integrator_optimal.yaml", expression, "optimal_control.step=1 ns", verb="optimise")
+
+    def test_an_optimisation_of_more_steps_than_can_be_counted(self):
+        expression = r"error: optimal_control\.step: gives 1e\+15 steps, at most 2e9 are sought$"
+        self.refused(SCENES / "double_integrator_optimal.yaml", expression, "optimal_control.step=1e-15 s", verb="optimise")
+
+    RESULTS_IN_MEMORY = (
+        r"^error: a motion with its results in memory takes [\d.e+]+ GiB, more than the [\d.e+]+ GiB of this machine: record fewer rows "
+        r"\(record\.every\) or quantities \(record\.quantities\), or take a longer step or a shorter duration$"
+    )
+    ENDLESS = "set: {dynamics.duration: 1.9 s, dynamics.step: 1 ns, record.every: 1}\n"
+
+    def test_sweeps_of_results_beyond_the_memory(self):
+        study = self.write("s.yaml", f"sweep: 1\nscene: {SCENES / 'revolute_joint_lumped.yaml'}\n{self.ENDLESS}"
+                           "vary: {controls.agonist.field: [10 kV/mm]}\noutputs: {a: 'max(joints.hinge.coordinate)'}\n")
+        self.assertRegex(self.message("sweep", study, code=2), self.RESULTS_IN_MEMORY)
+
+    def test_a_point_of_a_sweep_beyond_the_memory_is_marked(self):
+        study = self.write("s.yaml", f"sweep: 1\nscene: {SCENES / 'revolute_joint_lumped.yaml'}\nset: {{dynamics.duration: 1.9 s, record.every: 1}}\n"
+                           "vary: {dynamics.step: [1 ms, 1 ns]}\noutputs: {a: 'max(joints.hinge.coordinate)'}\n")
+        self.assertIn("wrong_input: error: a motion with its results in memory takes", self.program("sweep", study, code=3).stderr)
+
+    def test_fits_of_motions_beyond_the_memory(self):
+        self.write("data.csv", "time in ms,angle in rad\n" + "".join(f"{t},0.1\n" for t in range(5)))
+        study = self.write("s.yaml", f"calibrate: 1\nscene: {SCENES / 'revolute_joint_lumped.yaml'}\n{self.ENDLESS}"
+                           "fit: {materials.silicone.viscous.viscosity: {min: 1, max: 100}}\n"
+                           "reference: data.csv\ncompare: {joints.hinge.coordinate: {column: 2}}\n")
+        self.assertRegex(self.message("calibrate", study, code=2), self.RESULTS_IN_MEMORY)
 
 
 class OutOfMemory(ProgramTest):

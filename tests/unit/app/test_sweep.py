@@ -107,18 +107,28 @@ class Sweep(ProgramTest):
         self.assertEqual([row["status"] for row in self.table()], ["completed"] * 4)
 
     def test_an_interrupt_says_how_to_go_on(self):
-        study = self.study(n=40, duration="2 s")
-        process = self.start("sweep", study)
-        self.wait_for(lambda: (self.folder / "s.journal").exists(), process, "the journal is there")
-        time.sleep(0.1)
+        study = self.study(n=40, duration="100 ms")
+        self.program("sweep", study, "-o", "whole.h5", "--jobs", 2)
+        journal = self.folder / "s.journal"
+        process = self.start("sweep", study, "--jobs", 2)
+        self.wait_for(lambda: journal.exists() and journal.read_bytes().count(b"\n") > 3, process, "points are finished")
+        children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(), 130)
-        self.assertRegex(self.said(), r"interrupted with \d+ of 80 points to do; the same command goes on")
+        for child in children:
+            self.assertFalse(pathlib.Path("/proc", child).exists(), "points that run are ended")
+        kept = journal.read_bytes()
+        n_kept = kept.count(b"\n") - 1
+        self.assertEqual(self.said(), f"warning: interrupted with {80 - n_kept} of 80 points to do; the same command goes on\n")
         self.assertFalse((self.folder / "s.csv").exists())
+        self.program("sweep", study)
+        self.assertTrue(journal.read_bytes().startswith(kept), "what was finished is not run again")
+        self.assertEqual(self.both("whole"), self.both("s"))
 
     def test_shards_make_the_table_of_the_whole(self):
         study = self.study()
         self.program("sweep", study, "-o", "whole.h5")
+        self.assertEqual(self.message("sweep", study, "-o", "s.h5", "--merge", code=2), "error: nothing to merge: no part of this sweep has begun beside 's.h5'")
         for k in (2, 1):
             self.assertIn(" in other shards", self.program("sweep", study, "-o", "s.h5", "--shard", f"{k}/3").stderr)
         self.assertFalse((self.folder / "s.h5").exists())

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "fem/solid/field_peaks.hpp"
 #include "fem/solid/solid_action.hpp"
 #include "statics/equilibrium.hpp"
 #include "support/solid_cubes.hpp"
@@ -222,6 +223,24 @@ TEST(SolidAction, NewtonEndsQuadraticallyUnderAPressureOnAnOpenSurface) {
   EXPECT_LT(residuals[1], 1e-3 * residuals[0]);
   EXPECT_LT(residuals[2], 1e-4 * residuals[1]);
   EXPECT_LT(state.q[3 * system.node_at({4, 1, 1}) + 2], 0.9);
+}
+
+TEST(FieldPeaks, AreTheLargestOfTheKernelsFieldsAtTheGaussPoints) {
+  const auto model = test::make_model(everything(Formulation::mean_dilatation));
+  const ElementSet& elements = test::solid_in(*model).elements();
+  const VectorXd x = elements.reference() + rough(elements.reference().size(), 0.03, 8);
+  const VectorXd phi = rough(elements.n_nodes(), 1e4, 9);
+  std::vector<PointValues> points(8 * static_cast<std::size_t>(elements.n_cells()));
+  elements.point_values({.x = x.data(), .phi = phi.data()}, points.data());
+  VectorXd peaks(elements.n_cells());
+  field_peaks(elements, x, phi, peaks);
+  for (int cell = 0; cell < elements.n_cells(); ++cell) {
+    double largest = 0.0;
+    for (std::size_t q = 0; q < 8; ++q) {
+      largest = std::max(largest, Vector3d(points[8 * static_cast<std::size_t>(cell) + q].field).norm());
+    }
+    EXPECT_NEAR(peaks[cell], largest, 1e-12 * largest) << cell;
+  }
 }
 
 }  // namespace

@@ -12,7 +12,8 @@ TEST(Advice, EveryFailureOfTheNumericsSaysWhyAndWhatToTry) {
   for (const Status status :
        {Status::no_convergence, Status::loss_of_equilibrium, Status::muscle_collapse, Status::inverted_element,
         Status::breakdown, Status::step_too_large, Status::rank_change, Status::infeasible, Status::iteration_limit}) {
-    for (const Task task : {Task::statics, Task::dynamics, Task::explicit_dynamics, Task::optimal_control}) {
+    for (const Task task :
+         {Task::statics, Task::dynamics, Task::explicit_dynamics, Task::optimal_control, Task::replay}) {
       const Advice advice = advice_on(status, task);
       EXPECT_FALSE(advice.meaning.empty()) << variational::name_of(status);
       EXPECT_FALSE(advice.remedy.empty()) << variational::name_of(status);
