@@ -64,10 +64,14 @@ struct VolumeBatch {
   }
 };
 
+/// [element][8][3], element by element: the addresses of one are computed once.
 template <class T>
 void scatter_gradient(const T (&gradient)[3][8], const Batch& batch, double* to) {
-  for (int i = 0; i < 3; ++i)
-    for (int a = 0; a < 8; ++a) scatter_element(result(gradient[i][a]), batch, 24, 3 * corner_of_bits[a] + i, to);
+  for (int lane = 0; lane < batch.active; ++lane) {
+    double* const of_element = to + 24L * batch.elements[lane];
+    for (int i = 0; i < 3; ++i)
+      for (int a = 0; a < 8; ++a) of_element[3 * corner_of_bits[a] + i] = result(gradient[i][a])[lane];
+  }
 }
 
 template <class L>

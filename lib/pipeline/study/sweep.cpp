@@ -44,8 +44,6 @@ class SweepRun {
   }
 
   SweepEnd run() {
-    if (setup_.force && !setup_.merge_only) forget();
-    std::vector<FinishedPoint> finished = finished_points(stem_, fingerprint_, outputs_.size());
     const bool begun = was_begun(stem_, fingerprint_);
     if (setup_.merge_only && !begun) {
       throw base::InputError(
@@ -56,9 +54,9 @@ class SweepRun {
           base::format("'{}' exists and is of no such sweep; give --force to overwrite it, or -o FILE", setup_.table));
     }
     SweepEnd end{.n_points = plan_.points.size()};
-    if (!setup_.merge_only) run_missing(finished, end);
-    finished = finished_points(stem_, fingerprint_, outputs_.size());
-    const std::vector<FinishedPoint> rows = all_rows(plan_, outputs_.size(), finished);
+    if (!setup_.merge_only) run_missing(end);
+    const std::vector<FinishedPoint> rows =
+        all_rows(plan_, outputs_.size(), finished_points(stem_, fingerprint_, outputs_.size()));
     for (const FinishedPoint& row : rows) {
       if (row.status == "missing") {
         ++end.n_missing;
@@ -112,7 +110,7 @@ class SweepRun {
     return setup_.n_shards == 1 ? stem_ : base::format("{}.{}-of-{}", stem_, setup_.shard, setup_.n_shards);
   }
 
-  /// Removes the table and the journals; a shard its own journal only.
+  /// Removes the journals of shards; a shard leaves those of others alone.
   void forget() const {
     if (setup_.n_shards > 1) return;
     std::error_code none;
@@ -125,10 +123,11 @@ class SweepRun {
     for (const fs::path& path : old) fs::remove(path, none);
   }
 
-  void run_missing(const std::vector<FinishedPoint>& finished, SweepEnd& end) {
-    Journal journal(this->journal(), fingerprint_, setup_.force);
+  void run_missing(SweepEnd& end) {
+    if (setup_.force) forget();
+    Journal journal(this->journal(), fingerprint_, setup_.force);  // begun anew, it has no points
     std::vector<bool> is_done(plan_.points.size(), false);
-    for (const FinishedPoint& point : finished) {
+    for (const FinishedPoint& point : finished_points(stem_, fingerprint_, outputs_.size())) {
       if (point.point < is_done.size()) is_done[point.point] = true;
     }
     std::vector<std::size_t> tasks;

@@ -62,7 +62,7 @@ class Problem {
     const pipeline::Outcome outcome = pipeline::initial_state(scene_, built_, {}, start);
     MULDI_EXPECT(outcome.completed(), "the problem has an initial state");
     problem_.emplace(pipeline::build_optimal_problem(scene_, built_, start.x));
-    guess_ = pipeline::make_guess(scene_, problem_->problem, 0);
+    guess_ = pipeline::make_guess(scene_, built_, problem_->problem, 0);
   }
 
   /// Solves the last stage from the scene's guess, at most `limit` seconds; the transcription counts.

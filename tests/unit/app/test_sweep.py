@@ -57,6 +57,15 @@ class Sweep(ProgramTest):
         # Published 7.73, independent 7.7284947404 degrees.
         self.assertAlmostEqual(float(last["angle [rad]"]) * 57.29577951308232, 7.7284947404, places=8)
 
+    def test_force_begins_a_finished_sweep_anew(self):
+        self.program("sweep", self.study(n=2))
+        first = self.both()
+        journal = self.folder / "s.journal"
+        journal.write_text(journal.read_text().replace("completed", "no_convergence", 1))
+        done = self.program("sweep", self.study(n=2), "--force")
+        self.assertEqual(done.stderr.strip(), "4 of 4 points: s.h5, s.csv")
+        self.assertEqual(self.both(), first)
+
     def test_jobs_do_not_change_a_byte(self):
         self.program("sweep", self.study(), "-o", "one.h5")
         self.program("sweep", self.study(), "-o", "three.h5", "--jobs", 3)
