@@ -191,7 +191,8 @@ void SolidSolver::decide(const model::IntervalPoint& at) {
   assemble({.q0 = q, .q1 = q, .q = q, .v = v, .u = at.u, .dt = at.dt, .y = &y});
   // The diagonal entries of a trilinear cell are 1/27 of its mass, at eight nodes.
   const double mean_mass = 8.0 / 27.0 * solid_.mass() / (at.dt * pattern_.n_nodes());
-  if (stiffness_of_step(linear_->matrix(), solid_.unknowns().mask(), mean_mass) <= stiff_step) return;
+  const double limit = stiffest_step(task_of(solid_, kind_).n_unknowns);
+  if (stiffness_of_step(linear_->matrix(), solid_.unknowns().mask(), mean_mass) <= limit) return;
   linear_ =
       make_linear(task_of(solid_, kind_), "direct", pattern_, solid_.unknowns().mask(), electrodes_in(solid_, kind_));
 }

@@ -1,5 +1,7 @@
 #include "fem/solid/solver_choice.hpp"
 
+#include <cmath>
+
 #include "base/error.hpp"
 #include "fem/solid/solid_factor.hpp"
 
@@ -29,6 +31,12 @@ bool is_direct(const SolverTask& task, const std::string& name) {
 bool is_open(const SolverTask& task, const std::string& name) {
   return name == "auto" && !task.tied && task.kind == model::Linearisation::step && task.n_unknowns > choice_from &&
          task.n_unknowns <= choice_to;
+}
+
+double stiffest_step(int n_unknowns) {
+  constexpr double measured = 30.0;
+  constexpr double measured_at = 18e3;  // unknowns
+  return measured * std::cbrt(std::pow(n_unknowns / measured_at, 2.0));
 }
 
 double stiffness_of_step(const math::SymmetricBlockMatrix& matrix, const math::NodeMask& mask, double mean_mass) {

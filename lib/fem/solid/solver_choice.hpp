@@ -15,13 +15,9 @@ namespace muldi::fem {
 inline constexpr int direct_in_dynamics = 60000;  ///< unknowns up to which a factor is kept
 inline constexpr int direct_at_rest = 150000;
 
-/// Sizes between which a solver of steps is chosen by how stiff they are, and the stiffness up to which an iteration
-/// takes less time than a kept factor: the diagonal of the matrix over that of the mass, which is 1 + 3/4 (c dt/h)^2
-/// for waves of speed c in cells h, and more with viscosity. Measured on the cube of 16^3 cells: an iteration takes
-/// 0.54 of the time of a factor at 5 (with viscosity; 0.7 at 1.5 without), 0.9 at 13, 1.1 at 50, 2.5 at 5000.
+/// Sizes between which a solver of steps is chosen by how stiff they are.
 inline constexpr int choice_from = 15000;
 inline constexpr int choice_to = direct_at_rest;
-inline constexpr double stiff_step = 30.0;
 
 /// What is to be solved.
 struct SolverTask {
@@ -38,6 +34,12 @@ std::optional<Package> package_of(const std::string& name);
 bool is_direct(const SolverTask& task, const std::string& name);
 /// True if the first matrix is to decide: make_linear gives the iteration, to be replaced where is_stiff.
 bool is_open(const SolverTask& task, const std::string& name);
+/// The stiffness of a step up to which an iteration takes less time than a kept factor: the diagonal of the matrix over
+/// that of the mass, which is 1 + 3/4 (c dt/h)^2 for waves of speed c in cells h, and more with viscosity. Measured on
+/// the cube of 16^3 cells: an iteration takes 0.54 of the time of a factor at 5 (with viscosity; 0.7 at 1.5 without),
+/// 0.9 at 13, 1.1 at 50, 2.5 at 5000. A solve with the factor of a cube grows as n^(4/3), the iterations as n and the
+/// root of the stiffness: the limit grows as n^(2/3).
+double stiffest_step(int n_unknowns);
 /// Mean of the diagonal of the free positions over that of the mass matrix of a step.
 double stiffness_of_step(const math::SymmetricBlockMatrix& matrix, const math::NodeMask& mask, double mean_mass);
 /// Muscles are many and small: their factors are read from memory in every iteration, and these have exact residuals.
