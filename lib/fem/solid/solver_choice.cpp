@@ -36,7 +36,7 @@ bool is_open(const SolverTask& task, const std::string& name) {
 double stiffest_step(int n_unknowns) {
   constexpr double measured = 30.0;
   constexpr double measured_at = 18e3;  // unknowns
-  return measured * std::cbrt(std::pow(n_unknowns / measured_at, 2.0));
+  return measured * std::pow(n_unknowns / measured_at, 2.0 / 3.0);
 }
 
 double stiffness_of_step(const math::SymmetricBlockMatrix& matrix, const math::NodeMask& mask, double mean_mass) {

@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "fem/solid/solid_factor.hpp"
+#include "fem/solid/solver_choice.hpp"
 #include "statics/equilibrium.hpp"
 #include "support/figure.hpp"
 #include "support/solid_system.hpp"
@@ -60,6 +61,12 @@ TEST(SolverChoice, DoesNotChangeResults) {
       }
     }
   }
+}
+
+TEST(SolverChoice, IteratesStifferStepsOfLargerSolids) {
+  // Eight times the unknowns: 16 times the solve with a factor of a cube, 8 times the iteration, whose number grows
+  // with the root of the stiffness; it may double, so that the stiffness may be four times as large.
+  EXPECT_NEAR(stiffest_step(8 * 20'000) / stiffest_step(20'000), 4.0, 1e-12);
 }
 
 struct AtRest {
