@@ -28,9 +28,11 @@ def run(program, build):
 def rows(report):
     for value in report["values"]:
         bound = value.get("bound")
-        verdict = "" if bound is None else "within" if value["value"] is not None and value["value"] <= bound else "OVER"
+        aim = value.get("aim")
+        number = float("inf") if value["value"] is None else value["value"]
+        verdict = "" if bound is None else "OVER" if number > bound else "within" if aim is None or number > aim else "within, and the aim"
         figure = "nan" if value["value"] is None else f"{value['value']:.4g}"
-        yield report["name"], value["name"], figure, value["unit"], "" if bound is None else f"{bound:.4g}", verdict
+        yield report["name"], value["name"], figure, value["unit"], "" if bound is None else f"{bound:.4g}", "" if aim is None else f"{aim:.4g}", verdict
 
 
 def main():
@@ -49,10 +51,10 @@ def main():
     if good:
         first = good[0]
         print(f"{first['cpu']}, {first['cores']} cores; {first['compiler']} {first['flags']}; commit {first['commit']}")
-        table = [("program", "figure", "value", "unit", "bound", "")] + [row for report in good for row in rows(report)]
-        widths = [max(len(row[column]) for row in table) for column in range(6)]
+        table = [("program", "figure", "value", "unit", "bound", "aim", "")] + [row for report in good for row in rows(report)]
+        widths = [max(len(row[column]) for row in table) for column in range(7)]
         for row in table:
-            print("  ".join(cell.rjust(width) if column in (2, 4) else cell.ljust(width)
+            print("  ".join(cell.rjust(width) if column in (2, 4, 5) else cell.ljust(width)
                             for column, (cell, width) in enumerate(zip(row, widths))).rstrip())
     print(f"written: {build / 'bench.json'}", file=sys.stderr)
     return 0 if len(good) == len(reports) else 1

@@ -202,5 +202,22 @@ TEST(RoundActuatorClamped, ContractsLessThanTheFreeOne) {
   EXPECT_GT((20.0 - clamped) / (20.0 - free), 0.95);  // slightly, as published
 }
 
+/// Viscous stress of a uniaxial stretch that keeps the volume: 3/2 eta L'/L, over a period of L = l0 + a sin.
+TEST(DynamicMechanicalAnalysis, TurnsTheWorkOfTheMachineIntoTheLossOfTheClosedForm) {
+  const double omega = 2 * std::numbers::pi * 5e-3, l0 = 1.1, a = 0.1;
+  const double loss = 3 * std::numbers::pi * 0.75 * omega * 400.0 * (1 / std::sqrt(1 - a * a / (l0 * l0)) - 1);
+  const auto errors = [&](double step) {
+    const SceneRun run("dynamic_mechanical_analysis", {step_of(step)});
+    EXPECT_TRUE(run.outcome().completed()) << run.outcome().sentence;
+    const auto of_last_period = [&](const std::string& path) { return run.value(path) - run.value_at(path, 200.0); };
+    return Eigen::Vector2d(of_last_period("energy/dissipated") - loss, of_last_period("energy/external") - loss);
+  };
+  const Eigen::Vector2d coarse = errors(1.0), fine = errors(0.5);
+  EXPECT_NEAR(coarse[0] / fine[0], 4.0, 0.05);
+  EXPECT_NEAR(coarse[1] / fine[1], 4.0, 0.05);
+  EXPECT_LT(std::abs(extrapolated(coarse[0], fine[0])), 1e-6 * loss);
+  EXPECT_LT(std::abs(extrapolated(coarse[1], fine[1])), 1e-5 * loss);
+}
+
 }  // namespace
 }  // namespace muldi::golden

@@ -258,9 +258,14 @@ void Solid::request(model::PatternRequest& pattern) const {
   pattern.add_clique(nodes);
 }
 
-void Solid::follow(Eigen::VectorXd& velocity) const {
+void Solid::follow(std::span<const double> du, Eigen::VectorXd& velocity) const {
   unknowns_.keep_free_positions(positions(velocity));
+  if (!du.empty()) unknowns_.place_position_rates(du, positions(velocity));
   ties_.follow(q_.first, velocity);
+}
+
+double Solid::work_of_prescribed(const Eigen::VectorXd& force, const Eigen::VectorXd& motion) const {
+  return unknowns_.work_of_prescribed(positions(force), positions(motion));
 }
 
 void Solid::keep_free(Eigen::VectorXd& rows) const { unknowns_.keep_free_positions(positions(rows)); }

@@ -113,7 +113,8 @@ class Solid final : public model::Substructure {
                      Eigen::VectorXd& h) const override;
   void keep_free(Eigen::VectorXd& rows) const override;
   void gather(Eigen::VectorXd& rows) const override { ties_.gather(q_.first, rows); }
-  void follow(Eigen::VectorXd& velocity) const override;
+  void follow(std::span<const double> du, Eigen::VectorXd& velocity) const override;
+  double work_of_prescribed(const Eigen::VectorXd& force, const Eigen::VectorXd& motion) const override;
   bool moves() const override { return unknowns_.moves(); }
   void add_multiplier_impulse(const Eigen::VectorXd& q, const Eigen::VectorXd& impulse,
                               Eigen::VectorXd& rows) const override;

@@ -1,5 +1,6 @@
 /// Energies and work of a solid, and what makes a configuration inadmissible.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "base/text.hpp"
@@ -102,8 +103,10 @@ std::string Solid::inadmissible(const Eigen::VectorXd& q) const {
   const double margin = elements_.forces({.x = q.data() + q_.first}, {.least_J = least.data()});
   if (margin > 0.0) return {};
   Eigen::Index worst = 0;
-  for (Eigen::Index cell = 0; cell < least.size(); ++cell) {
-    if (!(least[cell] >= least[worst])) worst = cell;
+  for (Eigen::Index cell = 1; cell < least.size() && !std::isnan(least[worst]); ++cell) {
+    // Round-off does not choose between equal cells.
+    constexpr double clearly = 1e-6;
+    if (!(least[cell] >= least[worst] - clearly * std::max(1.0, std::abs(least[worst])))) worst = cell;
   }
   return base::format("solid '{}': {} is inverted (det F {:.3g})", data_.name, place_of_cell(static_cast<int>(worst)),
                       least[worst]);

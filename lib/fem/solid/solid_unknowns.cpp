@@ -80,6 +80,16 @@ void SolidUnknowns::place_potential_rates(std::span<const double> du, Eigen::Ref
   for (const PrescribedPotential& said : data_->potentials) dphi[said.node] = said.value.rate(du);
 }
 
+double SolidUnknowns::work_of_prescribed(const Eigen::Ref<const Eigen::VectorXd>& force,
+                                         const Eigen::Ref<const Eigen::VectorXd>& motion) const {
+  double work = 0.0;
+  for (const PrescribedDisplacement& said : data_->displacements) {
+    const Eigen::Index at = 3 * static_cast<Eigen::Index>(said.node) + said.component;
+    work += force[at] * motion[at];
+  }
+  return work;
+}
+
 void SolidUnknowns::keep_free_positions(Eigen::Ref<Eigen::VectorXd> rows) const {
   for (const Eigen::Index i : fixed_positions_) rows[i] = 0.0;
 }

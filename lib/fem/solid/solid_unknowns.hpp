@@ -35,6 +35,9 @@ class SolidUnknowns {
   /// The same for the derivatives when the controls move along `du`.
   void place_position_rates(std::span<const double> du, Eigen::Ref<Eigen::VectorXd> dx) const;
   void place_potential_rates(std::span<const double> du, Eigen::Ref<Eigen::VectorXd> dphi) const;
+  /// Work of `force` along `motion` at the prescribed entries of the positions (3 n_nodes).
+  double work_of_prescribed(const Eigen::Ref<const Eigen::VectorXd>& force,
+                            const Eigen::Ref<const Eigen::VectorXd>& motion) const;
   /// Zeroes the entries of rows of positions that are not free: prescribed or tied.
   void keep_free_positions(Eigen::Ref<Eigen::VectorXd> rows) const;
   /// Zeroes the rows of prescribed potentials; those of floating electrodes stay.
