@@ -163,6 +163,12 @@ class Substructure : public IntervalTerm {
     return false;
   }
 
+  /// Empty, or where a configuration q (n_q) that can be computed has a shape that the discretisation does not resolve.
+  virtual std::string unresolved(const Eigen::VectorXd& q) const {
+    static_cast<void>(q);
+    return {};
+  }
+
   /// What iterative evaluations start from, and which thus decides their last bits: a restart needs it.
   virtual Eigen::Index n_memory() const = 0;
   virtual void store_memory(Eigen::Ref<Eigen::VectorXd> out) const = 0;

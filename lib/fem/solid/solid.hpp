@@ -119,6 +119,7 @@ class Solid final : public model::Substructure {
   void add_multiplier_impulse(const Eigen::VectorXd& q, const Eigen::VectorXd& impulse,
                               Eigen::VectorXd& rows) const override;
   bool add_velocity_rows(const Eigen::VectorXd& q, const Eigen::VectorXd& v, Eigen::VectorXd& h) const override;
+  std::string unresolved(const Eigen::VectorXd& q) const override;
   Eigen::Index n_memory() const override;
   void store_memory(Eigen::Ref<Eigen::VectorXd> out) const override;
   void restore_memory(const Eigen::Ref<const Eigen::VectorXd>& memory) const override;

@@ -4,10 +4,14 @@
 #include <limits>
 
 #include "base/text.hpp"
+#include "fem/solid/least_stretch.hpp"
 #include "fem/solid/solid.hpp"
 
 namespace muldi::fem {
 namespace {
+
+/// Of the volume of a cell: where a Gauss point has less, curves of equilibria of several meshes part.
+constexpr double least_share_of_volume = 0.1;
 
 /// The number of a cell as its user knows it.
 std::string cell_label(const SolidDescription& data, int cell) {
@@ -110,6 +114,25 @@ std::string Solid::inadmissible(const Eigen::VectorXd& q) const {
   }
   return base::format("solid '{}': {} is inverted (det F {:.3g})", data_.name, place_of_cell(static_cast<int>(worst)),
                       least[worst]);
+}
+
+std::string Solid::unresolved(const Eigen::VectorXd& q) const {
+  // Only volumes that are looked at as a whole let a part of a cell vanish.
+  if (!has_pressures()) return {};
+  Eigen::VectorXd least(elements_.n_cells());
+  elements_.forces({.x = q.data() + q_.first}, {.least_J = least.data()});
+  const Volumes volumes = volumes_at(positions(q));
+  least.array() /= volumes.J.array();
+  int worst = 0;
+  for (int cell = 1; cell < elements_.n_cells(); ++cell) {
+    // Round-off does not choose between equal cells.
+    if (least[cell] < (1.0 - 1e-6) * least[worst]) worst = cell;
+  }
+  if (least[worst] > least_share_of_volume) return {};
+  return base::format(
+      "{} of solid '{}' gives way alone: it keeps its volume as a whole, but of the part at one of its Gauss points "
+      "{:.3g} is left, squeezed to stretch {:.3g}; what follows depends on the mesh",
+      place_of_cell(worst), data_.name, least[worst], least_stretches(elements_, positions(q))[worst]);
 }
 
 }  // namespace muldi::fem

@@ -10,6 +10,9 @@ namespace {
 
 /// Stiffness of the volume in the factors of the incompressible formulations, over what resists the smoothest motion.
 constexpr double augmentation = 3e2;
+/// The same at rest, where volumes are kept exactly by every factor: an iteration less a digit of it, and the exact
+/// residuals return the digits that the factor loses.
+constexpr double augmentation_at_rest = 1e4;
 /// The same where patterns of pressures are filtered out, against which it works in vain.
 constexpr double filtered_augmentation = 30.0;
 constexpr double pi = 3.14159265358979323846;
@@ -120,10 +123,11 @@ void SolidSolver::weigh_pressures(const model::IntervalPoint& at) {
   // The longest waves of volume, with half a wave across the solid, are held least: by their inertia where dt is short.
   const double wave = step ? 2.0 * solid_.size() / (pi * at.dt) : 0.0;
   const double inertia = solid_.mass() / V.sum() * wave * wave;
+  const double factor = kind_ == Linearisation::rest ? augmentation_at_rest : augmentation;
   for (Eigen::Index cell = 0; cell < V.size(); ++cell) {
     const auto index = static_cast<std::size_t>(solid_.data().material_of_cell[static_cast<std::size_t>(cell)]);
     const double viscous = step ? viscosity_of(solid_.data().materials[index]) / at.dt : 0.0;
-    double stiffness = augmentation * (solid_.data().shear_moduli[index] + viscous + inertia);
+    double stiffness = factor * (solid_.data().shear_moduli[index] + viscous + inertia);
     if (solid_.filter().n_patterns() > 0) {
       stiffness = filtered_augmentation * (solid_.shear_modulus() + viscous + inertia);
     }
@@ -329,7 +333,7 @@ void SolidSolver::refine(SolidVector& out) {
   // With the pressures of the factor left out, the rows miss D p by what the factor's own solution says.
   rows_ = compliance_.cwiseProduct(out.p);
   out.p.setZero();
-  const math::KrylovLimits limits{.relative_tolerance = std::max(refined, 10.0 * linear_->accuracy()),
+  const math::KrylovLimits limits{.relative_tolerance = std::max(refined_, 10.0 * linear_->accuracy()),
                                   .max_iterations = max_refinements};
   // Beyond a loss of stability the complement has other signs, and so it has for filtered patterns.
   if (solid_.filter().n_patterns() > 0 ||
