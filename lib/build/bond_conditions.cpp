@@ -51,7 +51,8 @@ void BondBuilder::hand_over_displacements() {
       if (other != values.end() && same(other->second, value)) continue;
       return refuse(node, std::string("has a prescribed displacement along ") + axes[component] +
                               ", but lies between nodes of another solid, to which it is fixed: prescribe the same on "
-                              "that solid, at " + name_of(to) + " and its neighbours");
+                              "that solid, at " +
+                              name_of(to) + " and its neighbours");
     }
   }
   data_.displacements = std::move(kept);
@@ -85,7 +86,8 @@ void BondBuilder::hand_over_ties() {
       if (other != ties.end() && other->second.host == tie.host) continue;
       return refuse(node, "is fixed to '" + data_.hosts[static_cast<std::size_t>(tie.host)].name +
                               "' and lies between nodes of another solid, to which it is fixed too: fix that solid to "
-                              "the body as well, at " + name_of(to) + " and its neighbours");
+                              "the body as well, at " +
+                              name_of(to) + " and its neighbours");
     }
   }
   data_.ties = std::move(kept);
@@ -117,7 +119,8 @@ void BondBuilder::hand_over_potentials() {
       if (other != values.end() && same(other->second, value)) continue;
       return refuse(node,
                     "has a prescribed potential, but lies between nodes of another dielectric, to which it is fixed: "
-                    "prescribe the same on that solid, at " + name_of(to) + " and its neighbours");
+                    "prescribe the same on that solid, at " +
+                        name_of(to) + " and its neighbours");
     }
   }
   data_.potentials = std::move(kept);

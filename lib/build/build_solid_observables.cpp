@@ -155,8 +155,8 @@ class ProbeBuilder {
       for (int i = 0; i < 3; ++i) held |= solid.is_held(node, i);
     }
     if (!held) errors_.push_back(scene::error_at(where.origin, "no displacement is prescribed there: no reaction"));
-    record_vector([&solid, nodes](const NodeView& at) { return solid.reaction(nodes, at); }, probe.along,
-                  dim::force, "force on the solid that holds its prescribed displacements", false);
+    record_vector([&solid, nodes](const NodeView& at) { return solid.reaction(nodes, at); }, probe.along, dim::force,
+                  "force on the solid that holds its prescribed displacements", false);
   }
 
   /// The charge of an electrode; of alternating ones, of those at each potential in turn.

@@ -207,7 +207,8 @@ class Joiner {
       Eigen::Matrix<double, 3, 4> positions;
       for (int a = 0; a < 4; ++a) positions.col(a) = at(corners[static_cast<std::size_t>(a)]);
       for (std::size_t a = 0; a < 4; ++a) {
-        if ((positions.col(static_cast<Eigen::Index>(a)) - X).norm() <= tolerance_) return bonds_.unite(node, corners[a]);
+        if ((positions.col(static_cast<Eigen::Index>(a)) - X).norm() <= tolerance_)
+          return bonds_.unite(node, corners[a]);
       }
       const Eigen::Vector3d centre = positions.rowwise().mean();
       const double reach = (positions.colwise() - centre).colwise().norm().maxCoeff();

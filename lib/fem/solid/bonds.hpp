@@ -34,7 +34,8 @@ class Bonds {
   std::vector<std::pair<int, int>> pairs(const std::vector<std::array<int, 8>>& cells) const;
   /// Index of the node's bond, or -1.
   int bond_of(int node) const { return of_node_[static_cast<std::size_t>(node)]; }
-  /// The nodes that unknown `unknown` (3: the potential) of a node stands for, with weights: itself if it is no other's.
+  /// The nodes that unknown `unknown` (3: the potential) of a node stands for, with weights: itself if it is no
+  /// other's.
   struct Terms {
     std::vector<int> nodes;
     std::vector<double> of_position;

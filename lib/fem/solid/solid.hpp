@@ -11,11 +11,11 @@
 /// and at rest V_e (J_e - 1) and V_e (U'(J_e) - p_e) / U''(J_e).
 #include <memory>
 
+#include "fem/solid/bonds.hpp"
 #include "fem/solid/potential_solver.hpp"
 #include "fem/solid/pressure_filter.hpp"
 #include "fem/solid/solid_loads.hpp"
 #include "fem/solid/solid_unknowns.hpp"
-#include "fem/solid/bonds.hpp"
 #include "fem/solid/ties.hpp"
 #include "fem/solid/volumes.hpp"
 #include "model/substructure.hpp"
@@ -32,7 +32,8 @@ class Solid final : public model::Substructure {
   const SolidUnknowns& unknowns() const { return unknowns_; }
   const Ties& ties() const { return ties_; }
   const Bonds& bonds() const { return bonds_; }
-  /// The solids that this one is made of, in the order of their nodes: itself, or several that are fixed to one another.
+  /// The solids that this one is made of, in the order of their nodes: itself, or several that are fixed to one
+  /// another.
   const std::vector<Member>& members() const { return data_.members; }
   /// The member that a cell belongs to.
   const Member& member_of_cell(int cell) const;
@@ -170,7 +171,7 @@ class Solid final : public model::Substructure {
   mutable int last_volumes_ = 0;
   mutable Eigen::VectorXd phi_;
   mutable std::vector<ElementEnergies> energies_;  // of the materials
-  mutable double potential_scale_ = 0.0;  // the largest potential so far
+  mutable double potential_scale_ = 0.0;           // the largest potential so far
 };
 
 }  // namespace muldi::fem

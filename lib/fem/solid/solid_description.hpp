@@ -135,7 +135,7 @@ struct SolidDescription {
   /// By node, where there are bonds: bits of what its own member's conditions give, 0 to 2 by displacements and ties to
   /// bodies or to ground, 3 by a named electrode.
   std::vector<std::uint8_t> given = {};
-  bool tied_to_ground = false;   ///< prescribed displacements are ties to ground, which does not turn
+  bool tied_to_ground = false;  ///< prescribed displacements are ties to ground, which does not turn
   std::vector<PrescribedPotential> potentials = {};  ///< none: the solid has no field
   std::vector<FloatingElectrode> floating = {};
   std::vector<Electrode> electrodes = {};

@@ -25,9 +25,8 @@ std::string Solid::place_of_cell(int cell) const {
 }
 
 const Member& Solid::member_of_cell(int cell) const {
-  const auto found = std::find_if(data_.members.begin(), data_.members.end(), [cell](const Member& member) {
-    return cell < member.first_cell + member.n_cells;
-  });
+  const auto found = std::find_if(data_.members.begin(), data_.members.end(),
+                                  [cell](const Member& member) { return cell < member.first_cell + member.n_cells; });
   return *found;
 }
 
@@ -92,8 +91,8 @@ void Solid::energies(const model::NodePoint& at, std::span<model::Energy> out) c
     out[k].gravity += loads_.gravity_energy(x, member.first_node, member.n_nodes);
     // Charges that are given instead of potentials belong to the enthalpy: its stationary value by phi is the energy.
     if (unknowns_.has_field()) {
-      out[k].electric += charge_.segment(member.first_node, member.n_nodes)
-                             .dot(phi_.segment(member.first_node, member.n_nodes));
+      out[k].electric +=
+          charge_.segment(member.first_node, member.n_nodes).dot(phi_.segment(member.first_node, member.n_nodes));
     }
     if (!dilates) continue;
     const Volumes& volumes = volumes_at(x);

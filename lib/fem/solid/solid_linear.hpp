@@ -27,8 +27,8 @@ class SolidLinear {
   SolidLinear(const SolidLinear&) = delete;
   SolidLinear& operator=(const SolidLinear&) = delete;
 
-  /// Right sides are gathered from bonded nodes, and solutions followed by them; the matrix is to be folded before it is
-  /// factorised. `bonds` must outlive the object.
+  /// Right sides are gathered from bonded nodes, and solutions followed by them; the matrix is to be folded before it
+  /// is factorised. `bonds` must outlive the object.
   void respect(const Bonds& bonds) { bonds_ = bonds.empty() ? nullptr : &bonds; }
 
   /// To be filled before `factorise`, which may change it.

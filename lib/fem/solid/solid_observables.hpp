@@ -64,8 +64,8 @@ class SolidRecords {
 
   /// Potentials of all nodes of the description (n_nodes).
   const Eigen::VectorXd& potentials(const model::NodeView& at) const;
-  /// Pressures of all cells of the description, positive in tension (n_cells): minus a third of the trace of the mechanical stress in the
-  /// formulation of displacements, else those of the volumetric law or the constraint.
+  /// Pressures of all cells of the description, positive in tension (n_cells): minus a third of the trace of the
+  /// mechanical stress in the formulation of displacements, else those of the volumetric law or the constraint.
   const Eigen::VectorXd& tensions(const model::NodeView& at) const;
   /// Means of all cells of the description over the reference volume, one column a cell.
   struct CellMeans {
