@@ -1,8 +1,12 @@
 #pragma once
 /// Boxes of one material in one mesh, or cut into solids that are attached to one another.
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <string>
 #include <vector>
 
+#include "fem/mesh/generate.hpp"
 #include "golden/scene_run.hpp"
 #include "scene/read_scene.hpp"
 
@@ -28,25 +32,38 @@ inline scene::Scene boxes(const std::vector<BoxSolid>& solids, const std::string
   return scene::read_scene_text(text + tail, "boxes.yaml");
 }
 
-/// Largest difference of a nodal field between a solid and the nodes of `whole` at the same reference positions, over
-/// all rows; `folder`: "solids/" or "statics/solids/".
+/// Reference positions of a box, one column a node.
+inline Eigen::Matrix3Xd reference(const golden::SceneRun& run, const std::string& solid) {
+  const fem::Mesh mesh = fem::make_mesh(std::get<fem::Box>(run.scene().solids.find(solid)->value.mesh));
+  Eigen::Matrix3Xd X(3, mesh.n_nodes());
+  for (Eigen::Index node = 0; node < X.cols(); ++node) {
+    const fem::Vec3& at = mesh.nodes[static_cast<std::size_t>(node)];
+    X.col(node) << at[0], at[1], at[2];
+  }
+  return X;
+}
+
+/// The node of a mesh at a place.
+inline Eigen::Index node_at(const Eigen::Matrix3Xd& X, const Eigen::Vector3d& place) {
+  Eigen::Index nearest = 0;
+  EXPECT_LT((X.colwise() - place).colwise().norm().minCoeff(&nearest), 1e-12);
+  return nearest;
+}
+
+/// Largest difference of a nodal field between solids and the nodes of `whole` at the same reference positions, over
+/// all rows; `folder`: "solids/" or "statics/solids/"; `width`: entries of a node.
 inline double difference(const golden::SceneRun& whole, const golden::SceneRun& cut, const std::string& folder,
                          const std::vector<std::string>& solids, const std::string& field, Eigen::Index width) {
-  const auto whole_X =
-      whole.rows(folder + "whole/reference").reshaped(3, whole.rows(folder + "whole/reference").size() / 3);
+  const Eigen::Matrix3Xd of_whole = reference(whole, "whole");
   double largest = 0.0;
   for (const std::string& name : solids) {
-    const auto X =
-        cut.rows(folder + name + "/reference").reshaped(3, cut.rows(folder + name + "/reference").size() / 3);
+    const Eigen::Matrix3Xd X = reference(cut, name);
     const auto a = whole.rows(folder + "whole/" + field);
     const auto b = cut.rows(folder + name + "/" + field);
     for (Eigen::Index node = 0; node < X.cols(); ++node) {
-      Eigen::Index same = 0;
-      (whole_X.colwise() - X.col(node)).colwise().squaredNorm().minCoeff(&same);
-      for (Eigen::Index row = 0; row < b.cols(); ++row) {
-        largest = std::max(largest, (a.col(row).segment(width * same, width) - b.col(row).segment(width * node, width))
-                                        .lpNorm<Eigen::Infinity>());
-      }
+      const Eigen::Index same = node_at(of_whole, X.col(node));
+      largest = std::max(
+          largest, (a.middleRows(width * same, width) - b.middleRows(width * node, width)).lpNorm<Eigen::Infinity>());
     }
   }
   return largest;
