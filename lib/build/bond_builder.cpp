@@ -6,8 +6,6 @@
 namespace muldi::build {
 namespace {
 
-/// Weights below this are those of a node on an edge for the corners off it.
-constexpr double no_weight = 1e-9;
 /// Weights of one and the same place that were found on two faces.
 constexpr double same_weight = 1e-6;
 

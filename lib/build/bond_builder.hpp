@@ -16,6 +16,9 @@ namespace muldi::build {
 /// Nodes that coincide become one; a node on a face becomes a weighted sum of the face's corners.
 class BondBuilder {
  public:
+  /// Weights below this are those of a node on an edge for the corners off it.
+  static constexpr double no_weight = 1e-9;
+
   /// `data`: the members side by side, and `meshes` those of the members; all must outlive the object.
   BondBuilder(fem::SolidDescription& data, std::vector<const fem::Mesh*> meshes, std::vector<base::Diagnostic>& errors);
 

@@ -170,6 +170,7 @@ void add_joined(TermContext& terms, JoinedSolid joined) {
       add_tie_observables(own.name, solid, *built.ties.back(), *built.model);
     }
   }
+  built.notes.insert(built.notes.end(), joined.notes.begin(), joined.notes.end());
   for (JoinedNodes& joint : joined.joints) add_joint_observables(solid, std::move(joint), *built.model);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "base/text.hpp"
 #include "build/bond_builder.hpp"
@@ -190,12 +191,45 @@ class Joiner {
     tolerance_ = closing_gap * diagonal(parts_[k]->data.X);
     JoinedNodes joint{.name = parts_[k]->entry->name, .other = parts_[other]->entry->name};
     widest_ = {};
+    held_.clear();
     for (const int node : nodes.nodes) {
       joint.nodes.push_back(joined_.data.members[k].first_node + node);
       place(joint.nodes.back(), said.origin);
     }
     joined_.joints.push_back(std::move(joint));
-    if (widest_.gap > tolerance_) report(k, other, said.origin);
+    if (widest_.gap > tolerance_) return report(k, other, said.origin);
+    note_loose_nodes(k, other, said);
+  }
+
+  /// Nodes of the other solid inside the joint that no node holds can leave it.
+  void note_loose_nodes(std::size_t k, std::size_t other, const scene::SolidAttachment& said) {
+    const fem::Selected faces = fem::MeshSelection(*parts_[k]->mesh).faces(said.where.selector);
+    if (!faces.error.empty()) return;
+    std::set<int> loose;
+    for (const auto& corners : corners_) loose.insert(corners.begin(), corners.end());
+    for (const int node : held_) loose.erase(node);
+    std::size_t n_loose = 0;
+    for (const int node : loose) {
+      const Eigen::Vector3d X = at(node);
+      n_loose += std::any_of(faces.faces.begin(), faces.faces.end(), [&](const fem::CellFace& face) {
+        Eigen::Matrix<double, 3, 4> positions;
+        Eigen::Index a = 0;
+        for (const int corner : fem::face_nodes(*parts_[k]->mesh, face)) {
+          positions.col(a++) = at(joined_.data.members[k].first_node + corner);
+        }
+        const Eigen::Vector3d centre = positions.rowwise().mean();
+        if ((X - centre).norm() > tolerance_ + (positions.colwise() - centre).colwise().norm().maxCoeff()) return false;
+        return fem::project_on_face(X, positions).distance <= tolerance_;
+      });
+    }
+    if (n_loose == 0) return;
+    const std::string& name = parts_[k]->entry->name;
+    const std::string& of = parts_[other]->entry->name;
+    joined_.notes.push_back(scene::warning_at(
+        said.origin,
+        base::format("{} nodes of '{}' lie in the joint between those of '{}' and are held by none: it can "
+                     "open there; attach the solid with the finer mesh to that with the coarser one",
+                     n_loose, of, name)));
   }
 
   /// A node is one with a corner that it meets, or fixed to the nearest face.
@@ -207,8 +241,9 @@ class Joiner {
       Eigen::Matrix<double, 3, 4> positions;
       for (int a = 0; a < 4; ++a) positions.col(a) = at(corners[static_cast<std::size_t>(a)]);
       for (std::size_t a = 0; a < 4; ++a) {
-        if ((positions.col(static_cast<Eigen::Index>(a)) - X).norm() <= tolerance_)
-          return bonds_.unite(node, corners[a]);
+        if ((positions.col(static_cast<Eigen::Index>(a)) - X).norm() > tolerance_) continue;
+        held_.push_back(corners[a]);
+        return bonds_.unite(node, corners[a]);
       }
       const Eigen::Vector3d centre = positions.rowwise().mean();
       const double reach = (positions.colwise() - centre).colwise().norm().maxCoeff();
@@ -220,6 +255,9 @@ class Joiner {
     }
     if (nearest.distance > widest_.gap) widest_ = {node, nearest.distance};
     if (nearest.distance > tolerance_) return;
+    for (std::size_t a = 0; a < 4; ++a) {
+      if (nearest.weights[a] > BondBuilder::no_weight) held_.push_back((*face)[a]);
+    }
     bonds_.fix(node, {face->begin(), face->end()}, {nearest.weights.begin(), nearest.weights.end()}, origin);
   }
 
@@ -268,6 +306,7 @@ class Joiner {
   std::vector<base::Diagnostic>& errors_;
   BondBuilder bonds_;
   std::vector<std::array<int, 4>> corners_;  // of the faces of the other solid
+  std::vector<int> held_;                    // of these, by nodes of the attachment
   double tolerance_ = 0.0;
   Widest widest_;
 };

@@ -21,6 +21,7 @@ struct JoinedSolid {
   fem::SolidDescription data = {};
   std::vector<std::vector<TiedNodes>> tied = {};  ///< of each member, in the numbers of `data`
   std::vector<JoinedNodes> joints = {};
+  std::vector<base::Diagnostic> notes = {};
 };
 
 /// Puts attached solids together, in the order of the first of them; a solid that nothing is attached to stays as it

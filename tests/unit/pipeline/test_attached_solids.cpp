@@ -170,6 +170,28 @@ TEST(AttachedSolid, PassesAHomogeneousStretchThroughMeshesOneOfWhichRefinesTheOt
   }
 }
 
+/// Stretched as above through 3 x 3 cells on 2 x 2, of which neither refines the other.
+TEST(AttachedSolid, MeshesThatDoNotRefineEachOtherMissAHomogeneousStretchALittle) {
+  const std::string rollers =
+      "      - {where: x-, displacement: [0, ~, ~]}\n      - {where: y-, displacement: [~, 0, ~]}\n";
+  const auto stretched = [&](const std::string& cells) {
+    return SceneRun(boxes({{"low", "[1, 1, 1]", "[2, 2, 2]", "[0.5, 0.5, 0.5]",
+                            "    conditions:\n      - {where: z-, displacement: [~, ~, 0]}\n" + rollers},
+                           {"up", "[1, 1, 1]", cells, "[0.5, 0.5, 1.5]",
+                            "    conditions:\n      - {where: z+, traction: [0, 0, 0.1]}\n" + rollers +
+                                "    attach: [{where: z-, solid: low, where_other: z+}]\n"}},
+                          rubber, "mean_dilatation",
+                          "statics: {steps: 1}\nrecord: {fields: {up: [position, stress]}}\n"));
+  };
+  const SceneRun matching = stretched("[2, 2, 2]");
+  const SceneRun run = stretched("[3, 3, 2]");
+  const double length = matching.last("statics/solids/up/position").tail<1>()[0];
+  EXPECT_NEAR(run.last("statics/solids/up/position").tail<1>()[0], length, 2e-3 * (length - 2.0));
+  const double stress = matching.last("statics/solids/up/stress")[2];
+  const Eigen::VectorXd all = run.last("statics/solids/up/stress");
+  for (Eigen::Index cell = 0; cell < 18; ++cell) EXPECT_NEAR(all[6 * cell + 2], stress, 0.12 * stress);
+}
+
 /// A pair with meshes that do not match, 3 x 3 cells against 2 x 2.
 SceneRun loose_pair(const std::string& formulation, const std::string& tail) {
   const std::string poisson = formulation == "incompressible" ? "0.5" : "0.4";
