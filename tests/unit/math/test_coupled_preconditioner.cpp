@@ -117,8 +117,8 @@ TEST(CoupledPreconditioner, TakesTheDegreeThatFitsTheSpectrum) {
     EXPECT_TRUE(preconditioner.update(matrix));
     return preconditioner.displacement().degree();
   };
-  // Consistent mass alone, with eigenvalues from 1/8 to 27/8, whose ends the estimate does not quite reach: 5/4 sqrt(27)
-  // is 6.5.
+  // Consistent mass alone, with eigenvalues from 1/8 to 27/8, whose ends the estimate does not quite reach: 5/4
+  // sqrt(27) is 6.5.
   EXPECT_EQ(degree(1e6, {.least = 1, .largest = 8}), 6);
   EXPECT_EQ(degree(1e6, {.least = 7, .largest = 8}), 7);
   EXPECT_EQ(degree(1e6, {.least = 1, .largest = 4}), 4);
