@@ -26,9 +26,10 @@ int BondBuilder::root(int node) {
   return node;
 }
 
-void BondBuilder::unite(int a, int b) {
+void BondBuilder::unite(int a, int b, const scene::Origin& origin) {
   const int low = std::min(root(a), root(b));
   const int high = std::max(root(a), root(b));
+  origins_[low] = &origin;
   if (low == high) return;
   parent_[static_cast<std::size_t>(high)] = low;
   count_[static_cast<std::size_t>(low)] += count_[static_cast<std::size_t>(high)];
@@ -49,7 +50,9 @@ std::string BondBuilder::name_of(int node) const {
 }
 
 void BondBuilder::refuse(int node, const std::string& what) {
-  errors_.push_back(scene::error_at(*origin_, name_of(node) + " " + what));
+  const auto united = origins_.find(root(node));
+  const scene::Origin& origin = united != origins_.end() ? *united->second : *fixed_.at(root(node)).origin;
+  errors_.push_back(scene::error_at(origin, name_of(node) + " " + what));
 }
 
 const BondBuilder::Sum* BondBuilder::sum_of(int root) const {
@@ -148,8 +151,7 @@ bool BondBuilder::ties_potential(int node) {
   return std::all_of(sum->begin(), sum->end(), [this](const auto& part) { return is_busy(part.first); });
 }
 
-void BondBuilder::finish(const scene::Origin& origin) {
-  origin_ = &origin;
+void BondBuilder::finish() {
   if (!resolve()) return;
   give();
   make_bonds();

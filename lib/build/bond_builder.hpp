@@ -22,13 +22,14 @@ class BondBuilder {
   /// `data`: the members side by side, and `meshes` those of the members; all must outlive the object.
   BondBuilder(fem::SolidDescription& data, std::vector<const fem::Mesh*> meshes, std::vector<base::Diagnostic>& errors);
 
-  void unite(int a, int b);
+  /// Makes two nodes one; `origin`: of the attachment that says so.
+  void unite(int a, int b, const scene::Origin& origin);
   /// Fixes a node to others; `origin`: of the attachment that says so.
   void fix(int node, std::vector<int> to, std::vector<double> weights, const scene::Origin& origin);
   /// Makes the bonds, moves the bonded nodes to where they belong, and hands what is prescribed on bonded nodes to
   /// those that they are fixed to. Errors where nodes are fixed to two places or in a ring, or where conditions
   /// contradict one another.
-  void finish(const scene::Origin& origin);
+  void finish();
 
  private:
   /// A weighted sum of nodes that are themselves free.
@@ -61,12 +62,12 @@ class BondBuilder {
   fem::SolidDescription& data_;
   std::vector<const fem::Mesh*> meshes_;
   std::vector<base::Diagnostic>& errors_;
-  const scene::Origin* origin_ = nullptr;
   std::vector<int> parent_;
-  std::vector<int> count_;                   // nodes of a root
-  std::vector<std::pair<int, Fixed>> said_;  // by `fix`
-  std::map<int, Fixed> fixed_;               // by root
-  std::map<int, std::optional<Sum>> sums_;   // by fixed root, once resolved; none: on the way
+  std::vector<int> count_;                       // nodes of a root
+  std::vector<std::pair<int, Fixed>> said_;      // by `fix`
+  std::map<int, const scene::Origin*> origins_;  // of roots that nodes were united to
+  std::map<int, Fixed> fixed_;                   // by root
+  std::map<int, std::optional<Sum>> sums_;       // by fixed root, once resolved; none: on the way
   std::map<int, int> bond_of_node_;
   std::vector<char> busy_;
 };

@@ -67,7 +67,7 @@ std::string freedom_note(const Eigen::VectorXd& X, const TiedNodes& group) {
 namespace {
 
 /// Of forces on the nodes of a solid, those that these nodes exert on something with its centre there.
-TieWrench reaction_to(const Eigen::VectorXd& on_nodes, const std::vector<int>& nodes,
+TieWrench reaction_to(const Eigen::Ref<const Eigen::VectorXd>& on_nodes, const std::vector<int>& nodes,
                       const Eigen::Ref<const Eigen::VectorXd>& x, const Eigen::Vector3d& centre) {
   TieWrench wrench;
   for (const int node : nodes) {
@@ -84,11 +84,14 @@ TieWrench reaction_to(const Eigen::VectorXd& on_nodes, const std::vector<int>& n
 
 TieWrench wrench_on(const fem::Solid& solid, const TiedNodes& group, const model::NodeView& at) {
   // What a tie does to its node, it takes from the body.
-  Eigen::VectorXd on_nodes = solid.positions(at.constraint_force);
-  solid.bonds().account(3, on_nodes);
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   if (group.body != multibody::ground) centre = at.q.segment<3>(12 * static_cast<Eigen::Index>(group.body));
-  return reaction_to(on_nodes, group.nodes, solid.positions(at.q), centre);
+  const auto x = solid.positions(at.q);
+  const auto on_nodes = solid.positions(at.constraint_force);
+  if (solid.bonds().empty()) return reaction_to(on_nodes, group.nodes, x, centre);
+  Eigen::VectorXd accounted = on_nodes;
+  solid.bonds().account(3, accounted);
+  return reaction_to(accounted, group.nodes, x, centre);
 }
 
 namespace {

@@ -161,7 +161,7 @@ class Joiner {
         if (said.solid) attach(k, said);
       }
     }
-    if (errors_.size() == before) bonds_.finish(parts_.front()->entry->origin);
+    if (errors_.size() == before) bonds_.finish();
     if (errors_.size() == before) check_fields();
   }
 
@@ -243,7 +243,7 @@ class Joiner {
       for (std::size_t a = 0; a < 4; ++a) {
         if ((positions.col(static_cast<Eigen::Index>(a)) - X).norm() > tolerance_) continue;
         held_.push_back(corners[a]);
-        return bonds_.unite(node, corners[a]);
+        return bonds_.unite(node, corners[a], origin);
       }
       const Eigen::Vector3d centre = positions.rowwise().mean();
       const double reach = (positions.colwise() - centre).colwise().norm().maxCoeff();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "attached_scene.hpp"
+#include "pipeline/summary.hpp"
 
 namespace muldi::test {
 namespace {
@@ -190,6 +191,20 @@ TEST(AttachedSolid, MeshesThatDoNotRefineEachOtherMissAHomogeneousStretchALittle
   const double stress = matching.last("statics/solids/up/stress")[2];
   const Eigen::VectorXd all = run.last("statics/solids/up/stress");
   for (Eigen::Index cell = 0; cell < 18; ++cell) EXPECT_NEAR(all[6 * cell + 2], stress, 0.12 * stress);
+}
+
+TEST(AttachedSolid, IsSummedUpAsOneWithWhatItsJointEliminates) {
+  const scene::Scene scene = boxes({{"low", "[1, 1, 1]", "[2, 2, 2]", "[0, 0, 0.5]", attach_up},
+                                    {"up", "[1, 1, 1]", "[2, 2, 2]", "[0, 0, 1.5]", ""}},
+                                   rubber, "mean_dilatation", "dynamics: {duration: 1, step: 1}\n");
+  const std::string text = pipeline::summary(scene, build::build_model(scene));
+  // Of 54 nodes 9 are one with others.
+  EXPECT_NE(
+      text.find("  2 solids attached to one another, low + up: 54 nodes, 16 cells, mean_dilatation\n"
+                "    free positions 135, 27 eliminated by attachment, no potentials (none is prescribed), element "
+                "pressures 16\n"),
+      std::string::npos)
+      << text;
 }
 
 /// A pair with meshes that do not match, 3 x 3 cells against 2 x 2.
