@@ -17,6 +17,8 @@ constexpr int edges_of_cell[12][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5
                                       {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
 /// Growth a step that a run does not live to see.
 constexpr double slow_growth = 0.01;
+/// Of its edge: a cell that is shorter pulls in or is crushed, whatever the step.
+constexpr double crushed = 0.5;
 
 double shortest_edge(const std::array<int, 8>& cell, const Eigen::Ref<const VectorXd>& x) {
   double least = std::numeric_limits<double>::infinity();
@@ -45,7 +47,9 @@ StepBound bound_of_cells(const Solid& solid, const VectorXd& q, const VectorXd& 
   for (int cell = 0; cell < elements.n_cells(); ++cell) {
     const double stress = std::abs(pressure_of(solid, cell, q, y));
     if (stress == 0.0) continue;
-    const double edge = shortest_edge(elements.cells()[static_cast<std::size_t>(cell)], x);
+    const std::array<int, 8>& nodes = elements.cells()[static_cast<std::size_t>(cell)];
+    const double edge = shortest_edge(nodes, x);
+    if (edge < crushed * shortest_edge(nodes, elements.reference())) continue;
     const double step = edge * std::sqrt(material_of(solid, cell).density / stress);
     // Round-off does not choose between equal cells.
     constexpr double clearly = 1.0 - 1e-6;
