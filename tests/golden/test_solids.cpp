@@ -256,7 +256,7 @@ TEST(RoundActuatorClamped, ContractsLessThanTheFreeOne) {
 /// Viscous stress of a uniaxial stretch that keeps the volume: 3/2 eta L'/L, over a period of L = l0 + a sin.
 TEST(DynamicMechanicalAnalysis, TurnsTheWorkOfTheMachineIntoTheLossOfTheClosedForm) {
   const double omega = 2 * std::numbers::pi * 5e-3, l0 = 1.1, a = 0.1;
-  const double loss = 3 * std::numbers::pi * 0.75 * omega * 400.0 * (1 / std::sqrt(1 - a * a / (l0 * l0)) - 1);
+  const double loss = 3 * std::numbers::pi * 0.75 * omega * 4000.0 * (1 / std::sqrt(1 - a * a / (l0 * l0)) - 1);
   const auto errors = [&](double step) {
     const SceneRun run("dynamic_mechanical_analysis", {step_of(step)});
     EXPECT_TRUE(run.outcome().completed()) << run.outcome().sentence;
