@@ -66,8 +66,10 @@ class SolidGuard {
     const Strength* passed = nullptr;
     Eigen::Index worst = 0;
     double most = 1.0;
-    for (Eigen::Index cell = 0; cell < peaks_.size(); ++cell) {
-      const auto& strength = strengths_[static_cast<std::size_t>(materials[static_cast<std::size_t>(cell)])];
+    const fem::Member& member = records_.member();
+    for (Eigen::Index cell = member.first_cell; cell < member.first_cell + member.n_cells; ++cell) {
+      const int material = materials[static_cast<std::size_t>(cell)] - member.first_material;
+      const auto& strength = strengths_[static_cast<std::size_t>(material)];
       if (!strength || peaks_[cell] <= most * strength->field) continue;
       most = peaks_[cell] / strength->field;
       worst = cell;
@@ -134,7 +136,7 @@ void add_guards(TermContext& context) {
     if (auto strength = strength_of(scene, entry.value.material.name)) guard_muscle(entry, *strength, *built.model);
   }
   for (std::size_t i = 0; i < scene.solids.size(); ++i) {
-    if (!built.solids[i]->unknowns().has_field()) continue;
+    if (!built.solid_records[i]->solid().unknowns().has_field()) continue;
     std::vector<std::optional<Strength>> strengths;
     bool any = false;
     for (const scene::MaterialName& name : scene.solids[i].value.material.names()) {

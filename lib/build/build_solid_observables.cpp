@@ -117,10 +117,12 @@ class ProbeBuilder {
     const fem::Selected found = fem::MeshSelection(mesh).faces(probe.average.where.selector);
     if (!accept(found, probe.average.where.origin)) return;
     const SolidRecords& solid = records(probe.average.solid);
+    const int first = solid.member().first_node;
     std::map<int, double> shares;
     double area = 0.0;
     for (const fem::CellFace& face : found.faces) {
-      const std::array<int, 4> corners = face_nodes(mesh, face);
+      std::array<int, 4> corners = face_nodes(mesh, face);
+      for (int& corner : corners) corner += first;
       const std::array<double, 4> share = fem::area_shares(corners, solid.solid().data().X);
       for (std::size_t a = 0; a < 4; ++a) {
         shares[corners[a]] += share[a];
@@ -147,13 +149,14 @@ class ProbeBuilder {
     const fem::Selected found = fem::MeshSelection(meshes_[index_of(probe.reaction.solid)]).nodes(where.selector);
     if (!accept(found, where.origin)) return;
     const SolidRecords& solid = records(probe.reaction.solid);
+    const std::vector<int> nodes = solid.nodes(found.nodes);
     bool held = false;
-    for (const int node : found.nodes) {
-      for (int i = 0; i < 3; ++i) held |= !solid.solid().unknowns().is_free(node, i);
+    for (const int node : nodes) {
+      for (int i = 0; i < 3; ++i) held |= solid.is_held(node, i);
     }
     if (!held) errors_.push_back(scene::error_at(where.origin, "no displacement is prescribed there: no reaction"));
-    record_vector([&solid, nodes = found.nodes](const NodeView& at) { return solid.reaction(nodes, at); }, probe.along,
-                  dim::force, "force on the solid that holds its prescribed displacements", false);
+    record_vector([&solid, nodes](const NodeView& at) { return solid.reaction(nodes, at); }, probe.along, dim::force,
+                  "force on the solid that holds its prescribed displacements", false);
   }
 
   /// The charge of an electrode; of alternating ones, of those at each potential in turn.
@@ -162,6 +165,7 @@ class ProbeBuilder {
     std::vector<const std::vector<int>*> groups;
     const auto collect = [&](const auto& list) {
       for (const auto& one : list) {
+        if (!solid.owns(one)) continue;
         const bool part = one.name.starts_with(probe.charge.name + "_") && is_alternating(probe.charge);
         if (part || one.name == probe.charge.name) groups.push_back(&one.nodes);
       }
@@ -195,7 +199,8 @@ class ProbeBuilder {
   fem::WeightedNodes node_at(const scene::ProbePoint& point) {
     const fem::Selected found =
         fem::MeshSelection(meshes_[index_of(*point.solid)]).nodes(fem::SelectPoint{.point = point.at});
-    return accept(found, point.origin) ? fem::WeightedNodes{found.nodes, {1.0}} : fem::WeightedNodes{};
+    if (!accept(found, point.origin)) return {};
+    return {records(*point.solid).nodes(found.nodes), {1.0}};
   }
 
   Read point(const scene::ProbePoint& said, PointQuantity of) {
@@ -258,10 +263,16 @@ class ProbeBuilder {
 
 model::FieldHistory history_of(const SolidRecords& records, const scene::RecordedFields& said) {
   const fem::SolidDescription& solid = records.solid().data();
+  const fem::Member& member = records.member();
   // Meshes of muscles too: the folder of the muscle holds its series over all records.
-  model::FieldHistory history{.folder = "solids/" + solid.name, .every = said.every};
-  history.reference.assign(solid.X.data(), solid.X.data() + solid.X.size());
-  for (const auto& cell : solid.cells) history.cells.insert(history.cells.end(), cell.begin(), cell.end());
+  model::FieldHistory history{.folder = "solids/" + member.name, .every = said.every};
+  const double* X = solid.X.data() + 3 * static_cast<std::ptrdiff_t>(member.first_node);
+  history.reference.assign(X, X + 3 * static_cast<std::ptrdiff_t>(member.n_nodes));
+  for (int cell = member.first_cell; cell < member.first_cell + member.n_cells; ++cell) {
+    for (const int node : solid.cells[static_cast<std::size_t>(cell)]) {
+      history.cells.push_back(node - member.first_node);
+    }
+  }
   for (const scene::SolidField field : said.fields) {
     history.fields.push_back(records.field(quantity_of(field), history.folder));
   }
@@ -281,13 +292,10 @@ const SolidRecords* records_of(const scene::Scene& scene, const std::string& nam
 }  // namespace
 
 void add_solid_observables(const scene::Scene& scene, const std::vector<fem::Mesh>& meshes, BuiltModel& built) {
-  for (const fem::Solid* solid : built.solids) {
-    built.solid_records.push_back(std::make_unique<SolidRecords>(*solid));
-    for (model::Observable& one : built.solid_records.back()->electrodes()) {
-      built.model->observables.push_back(std::move(one));
-    }
+  for (const auto& records : built.solid_records) {
+    for (model::Observable& one : records->electrodes()) built.model->observables.push_back(std::move(one));
     const model::ElectricRecord wanted = electric_record(scene);
-    if (wanted.any()) built.solid_records.back()->add_electric(wanted, *built.model);
+    if (wanted.any()) records->add_electric(wanted, *built.model);
   }
   ProbeBuilder probes(scene, meshes, built);
   for (const auto& entry : scene.record.probes) probes.add(entry);

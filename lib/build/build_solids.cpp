@@ -6,6 +6,7 @@
 #include "base/memory.hpp"
 #include "base/text.hpp"
 #include "build/build_ties.hpp"
+#include "build/join_solids.hpp"
 #include "build/place_bodies.hpp"
 #include "fem/mesh/check_mesh.hpp"
 #include "fem/mesh/generate.hpp"
@@ -137,12 +138,40 @@ fem::Mesh mesh_of(const scene::Scene& scene, const scene::Entry<scene::Solid>& e
       entry.value.mesh);
 }
 
-void refuse_ties(const scene::Entry<scene::Solid>& entry, std::vector<Diagnostic>& errors) {
-  for (const scene::SolidAttachment& tie : entry.value.attach) {
-    if (!tie.solid) continue;
-    errors.push_back(scene::error_at(
-        tie.origin, "this version of muldi-sim ties solids to bodies and to the ground, not to each other"));
+fem::SolidDescription describe_solid(const SolidContext& context, const scene::Entry<scene::Solid>& entry,
+                                     const fem::Mesh& mesh) {
+  fem::SolidDescription data{.name = entry.name};
+  place_nodes(entry.value, mesh, data.X);
+  data.cells = mesh.cells;
+  data.formulation = formulation(context.scene, entry, context.errors);
+  data.gravity = to_eigen(context.scene.gravity);
+  data.labels_of_nodes = mesh.labels_of_nodes;
+  data.labels_of_cells = mesh.labels_of_cells;
+  add_materials(context.scene, entry, mesh, context.errors, data);
+  return data;
+}
+
+/// Gives what was joined to the model, with the forces of its ties.
+void add_joined(TermContext& terms, JoinedSolid joined) {
+  BuiltModel& built = terms.built;
+  const fem::Solid& solid = add_solid(std::move(joined.data), built);
+  const auto& entry = terms.scene.solids[joined.solids.front()];
+  if (std::string note = solid.note(); !note.empty()) {
+    built.notes.push_back(scene::warning_at(entry.origin, std::move(note)));
   }
+  for (std::size_t member = 0; member < joined.solids.size(); ++member) {
+    const auto& own = terms.scene.solids[joined.solids[member]];
+    built.solid_records[joined.solids[member]] = std::make_unique<fem::SolidRecords>(solid, member);
+    for (TiedNodes& group : joined.tied[member]) {
+      if (const std::string note = freedom_note(solid.data().X, group); !note.empty()) {
+        built.notes.push_back(scene::warning_at(own.origin, "solid '" + own.name + "' " + note));
+      }
+      built.ties.push_back(std::make_unique<TiedNodes>(std::move(group)));
+      add_tie_observables(own.name, solid, *built.ties.back(), *built.model);
+    }
+  }
+  built.notes.insert(built.notes.end(), joined.notes.begin(), joined.notes.end());
+  for (JoinedNodes& joint : joined.joints) add_joint_observables(solid, std::move(joint), *built.model);
 }
 
 }  // namespace
@@ -211,36 +240,22 @@ void add_solids(TermContext& terms) {
   const scene::Scene& scene = terms.scene;
   std::vector<Diagnostic> errors;
   std::vector<fem::Mesh> meshes;
+  meshes.reserve(scene.solids.size());
+  std::vector<SolidPart> parts;
   const SolidContext context{scene, terms.poses, terms.controls, errors};
   for (const auto& entry : scene.solids) {
     require_memory(expected_cells(entry.value.mesh), entry.origin);
     const fem::Mesh& mesh = meshes.emplace_back(mesh_of(scene, entry));
     require_sound(mesh, entry.origin);
-    fem::SolidDescription data{.name = entry.name};
-    place_nodes(entry.value, mesh, data.X);
-    data.cells = mesh.cells;
-    data.formulation = formulation(scene, entry, errors);
-    data.gravity = to_eigen(scene.gravity);
-    data.labels_of_nodes = mesh.labels_of_nodes;
-    data.labels_of_cells = mesh.labels_of_cells;
-    const std::size_t before = errors.size();
-    add_materials(scene, entry, mesh, errors, data);
-    refuse_ties(entry, errors);
-    std::vector<TiedNodes> tied = add_conditions(context, entry, mesh, data);
-    if (errors.size() > before) continue;
-    const fem::Solid& solid = add_solid(std::move(data), terms.built);
-    if (std::string note = solid.note(); !note.empty()) {
-      terms.built.notes.push_back(scene::warning_at(entry.origin, std::move(note)));
-    }
-    for (TiedNodes& group : tied) {
-      if (const std::string note = freedom_note(solid.data().X, group); !note.empty()) {
-        terms.built.notes.push_back(scene::warning_at(entry.origin, "solid '" + entry.name + "' " + note));
-      }
-      terms.built.ties.push_back(std::make_unique<TiedNodes>(std::move(group)));
-      add_tie_observables(entry.name, solid, *terms.built.ties.back(), *terms.built.model);
-    }
+    SolidPart& part =
+        parts.emplace_back(SolidPart{.entry = &entry, .mesh = &mesh, .data = describe_solid(context, entry, mesh)});
+    part.tied = add_conditions(context, entry, mesh, part.data);
   }
   if (!errors.empty()) throw base::InputError(std::move(errors));
+  std::vector<JoinedSolid> joined = join_solids(std::move(parts), errors);
+  if (!errors.empty()) throw base::InputError(std::move(errors));
+  terms.built.solid_records.resize(scene.solids.size());
+  for (JoinedSolid& one : joined) add_joined(terms, std::move(one));
   add_solid_observables(scene, meshes, terms.built);
 }
 

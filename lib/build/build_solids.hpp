@@ -32,7 +32,7 @@ std::vector<TiedNodes> add_conditions(const SolidContext& context, const scene::
 /// Gives a solid to the model.
 const fem::Solid& add_solid(fem::SolidDescription data, BuiltModel& built);
 
-/// Adds what the scene records of solids to the model: `meshes` and the first substructures are in the order of the
+/// Adds what the scene records of solids to the model: `meshes` and the records of solids are in the order of the
 /// scene's solids. InputError for probes that find nothing.
 void add_solid_observables(const scene::Scene& scene, const std::vector<fem::Mesh>& meshes, BuiltModel& built);
 /// Adds the fields that the scene records of solids and meshed muscles, the last to be added to the model.

@@ -64,14 +64,13 @@ std::string freedom_note(const Eigen::VectorXd& X, const TiedNodes& group) {
   return {};
 }
 
-TieWrench wrench_on(const fem::Solid& solid, const TiedNodes& group, const model::NodeView& at) {
-  // What a tie does to its node, it takes from the body.
-  const auto on_nodes = solid.positions(at.constraint_force);
-  const auto x = solid.positions(at.q);
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  if (group.body != multibody::ground) centre = at.q.segment<3>(12 * static_cast<Eigen::Index>(group.body));
+namespace {
+
+/// Of forces on the nodes of a solid, those that these nodes exert on something with its centre there.
+TieWrench reaction_to(const Eigen::Ref<const Eigen::VectorXd>& on_nodes, const std::vector<int>& nodes,
+                      const Eigen::Ref<const Eigen::VectorXd>& x, const Eigen::Vector3d& centre) {
   TieWrench wrench;
-  for (const int node : group.nodes) {
+  for (const int node : nodes) {
     const Eigen::Index first = 3 * static_cast<Eigen::Index>(node);
     const Eigen::Vector3d force = -on_nodes.segment<3>(first);
     const Eigen::Vector3d lever = x.segment<3>(first) - centre;
@@ -81,25 +80,61 @@ TieWrench wrench_on(const fem::Solid& solid, const TiedNodes& group, const model
   return wrench;
 }
 
-void add_tie_observables(const std::string& owner, const fem::Solid& solid, const TiedNodes& group,
-                         model::Model& model) {
-  const std::string folder = "ties/" + owner + "." + group.name + "/";
+}  // namespace
+
+TieWrench wrench_on(const fem::Solid& solid, const TiedNodes& group, const model::NodeView& at) {
+  // What a tie does to its node, it takes from the body.
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  if (group.body != multibody::ground) centre = at.q.segment<3>(12 * static_cast<Eigen::Index>(group.body));
+  const auto x = solid.positions(at.q);
+  const auto on_nodes = solid.positions(at.constraint_force);
+  if (solid.bonds().empty()) return reaction_to(on_nodes, group.nodes, x, centre);
+  Eigen::VectorXd accounted = on_nodes;
+  solid.bonds().account(3, accounted);
+  return reaction_to(accounted, group.nodes, x, centre);
+}
+
+namespace {
+
+/// ties/<owner>.<other>/force and moment, by what gives both at a view.
+void add_wrench(const std::string& owner, const std::string& other, const std::string& centre,
+                const std::function<TieWrench(const model::NodeView&)>& wrench, model::Model& model) {
+  const std::string folder = "ties/" + owner + "." + other + "/";
   const auto add = [&](const char* what, base::Dimension unit, const std::string& doc, auto part) {
     model.observables.push_back({.path = folder + what,
                                  .shape = {3},
                                  .unit = unit,
                                  .doc = doc,
-                                 .evaluate = [&solid, &group, part](const model::NodeView& at, std::span<double> out) {
-                                   const Eigen::Vector3d value = wrench_on(solid, group, at).*part;
+                                 .evaluate = [wrench, part](const model::NodeView& at, std::span<double> out) {
+                                   const Eigen::Vector3d value = wrench(at).*part;
                                    std::copy(value.data(), value.data() + 3, out.begin());
                                  }});
   };
-  const bool on_ground = group.body == multibody::ground;
-  add("force", base::dimension::force, "force on " + group.name + " through its ties, world axes", &TieWrench::force);
-  add("moment", base::dimension::torque,
-      "moment on " + group.name + " through its ties about " + (on_ground ? "the origin" : "its centre of mass") +
-          ", world axes",
+  add("force", base::dimension::force, "force on " + other + " through its ties, world axes", &TieWrench::force);
+  add("moment", base::dimension::torque, "moment on " + other + " through its ties about " + centre + ", world axes",
       &TieWrench::moment);
+}
+
+}  // namespace
+
+void add_tie_observables(const std::string& owner, const fem::Solid& solid, const TiedNodes& group,
+                         model::Model& model) {
+  add_wrench(
+      owner, group.name, group.body == multibody::ground ? "the origin" : "its centre of mass",
+      [&solid, &group](const model::NodeView& at) { return wrench_on(solid, group, at); }, model);
+}
+
+void add_joint_observables(const fem::Solid& solid, JoinedNodes joint, model::Model& model) {
+  const std::string owner = joint.name;
+  const std::string other = joint.other;
+  add_wrench(
+      owner, other, "the origin",
+      [&solid, joint = std::move(joint)](const model::NodeView& at) {
+        Eigen::VectorXd forces = solid.positions(at.constraint_force);
+        solid.bonds().forces_of_bonds(forces);
+        return reaction_to(forces, joint.nodes, solid.positions(at.q), Eigen::Vector3d::Zero());
+      },
+      model);
 }
 
 }  // namespace muldi::build

@@ -51,4 +51,15 @@ TieWrench wrench_on(const fem::Solid& solid, const TiedNodes& group, const model
 void add_tie_observables(const std::string& owner, const fem::Solid& solid, const TiedNodes& group,
                          model::Model& model);
 
+/// Nodes of one solid that an attachment fixes to another.
+struct JoinedNodes {
+  std::string name = {};   ///< of the solid
+  std::string other = {};  ///< of the one that it is attached to
+  std::vector<int> nodes = {};
+};
+
+/// ties/<solid>.<other>/force and moment: what the nodes of the solid exert on the other; `solid` must outlive the
+/// observables.
+void add_joint_observables(const fem::Solid& solid, JoinedNodes joint, model::Model& model);
+
 }  // namespace muldi::build

@@ -53,9 +53,10 @@ struct BuiltModel {
   std::unique_ptr<model::Model> model;
   const multibody::TreeManifold* manifold = nullptr;       ///< of the model
   std::unique_ptr<multibody::JointRecords> joint_records;  ///< referred to by observables
-  std::vector<const fem::Solid*> solids;  ///< of the model: the scene's solids in order, then the meshed muscles
-  std::vector<std::unique_ptr<fem::SolidRecords>> solid_records;  ///< of these, referred to by observables
-  std::vector<std::unique_ptr<TiedNodes>> ties;                   ///< of these, referred to by observables
+  std::vector<const fem::Solid*> solids;  ///< of the model: the scene's solids, attached ones as one, then muscles
+  /// Of the scene's solids in order, then of the meshed muscles; referred to by observables.
+  std::vector<std::unique_ptr<fem::SolidRecords>> solid_records;
+  std::vector<std::unique_ptr<TiedNodes>> ties;  ///< of these, referred to by observables
   std::vector<MeshedMuscle> meshed_muscles;
   std::vector<DrivenMuscle> driven_muscles;
   std::vector<base::Diagnostic> notes;  ///< small gaps that were closed, and the like

@@ -9,7 +9,7 @@ SqueezedCell squeezed_cell(const BuiltModel& built, const Eigen::VectorXd& q) {
   for (const fem::Solid* solid : built.solids) {
     const fem::CellStretch cell = fem::least_stretch(solid->elements(), solid->positions(q));
     if (!least.name.empty() && cell.stretch >= least.stretch) continue;
-    least = {.name = solid->place_of_cell(cell.cell) + " of solid '" + solid->data().name + "'",
+    least = {.name = solid->place_of_cell(cell.cell) + " of solid '" + solid->member_of_cell(cell.cell).name + "'",
              .stretch = cell.stretch};
   }
   return least;

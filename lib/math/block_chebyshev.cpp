@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 
@@ -15,14 +16,17 @@ using Index = std::size_t;
 using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, 4, 4>;
 
 constexpr int lanczos_steps = 10;
+/// Degree over the square root of the ratio of the eigenvalues: measured with cubes of 32^3 and 64^3 cells.
+constexpr double degree_of_spectrum = 1.25;
 
 }  // namespace
 
-BlockChebyshev::BlockChebyshev(const SymmetricBlockPattern& pattern, int block_size, int degree)
+BlockChebyshev::BlockChebyshev(const SymmetricBlockPattern& pattern, int block_size, Degrees degrees)
     : matrix_(pattern, block_size),
-      degree_(degree),
+      degrees_(degrees),
+      degree_(degrees.least),
       inverse_diagonal_(static_cast<Index>(pattern.n_nodes()) * static_cast<Index>(block_size * block_size)) {
-  MULDI_EXPECT(degree >= 1, "at least one step");
+  MULDI_EXPECT(degrees.least >= 1 && degrees.largest >= degrees.least, "at least one step");
   for (Eigen::VectorXf* v : {&x_, &r_, &d_, &q_}) v->setZero(matrix_.n_rows());
 }
 
@@ -103,6 +107,8 @@ void BlockChebyshev::estimate_spectrum() {
   lanczos.diagonal(-1) = off_diagonal.head(k - 1);
   const Eigen::VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(lanczos).eigenvalues();
   upper_ = 1.1 * eigenvalues(k - 1);
+  const double wanted = degree_of_spectrum * std::sqrt(upper_ / std::max(0.9 * eigenvalues(0), 1e-6 * upper_));
+  degree_ = std::clamp(static_cast<int>(std::ceil(wanted)), degrees_.least, degrees_.largest);
   // Below: conjugate gradients do the rest better than a polynomial of low degree that reaches too far down.
   const double reach = 4.0 * degree_ * degree_;
   lower_ = std::max(0.9 * eigenvalues(0), upper_ / reach);

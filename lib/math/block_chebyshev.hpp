@@ -12,8 +12,15 @@ namespace muldi::math {
 /// threads. Saad, Iterative methods for sparse linear systems, algorithm 12.1.
 class BlockChebyshev {
  public:
-  /// `degree`: products with A and one (>= 1) for an application. The pattern must outlive the object.
-  BlockChebyshev(const SymmetricBlockPattern& pattern, int block_size, int degree);
+  /// Least and largest degree: products with A and one (>= 1) for an application. Of these it takes the one that fits
+  /// the spectrum, 5/4 of the square root of its ratio: with less the iteration has to do what an application leaves,
+  /// at the price of its own products, with more an application does what nobody asks for.
+  struct Degrees {
+    int least = 6;
+    int largest = 6;
+  };
+  /// The pattern must outlive the object.
+  BlockChebyshev(const SymmetricBlockPattern& pattern, int block_size, Degrees degrees);
 
   /// Takes new values. False if a diagonal block is not positive definite; the object is not usable then. The
   /// eigenvalues are estimated by Lanczos steps at the first time and when `new_spectrum` is set.
@@ -23,6 +30,7 @@ class BlockChebyshev {
   /// The interval of the polynomial.
   double lower_bound() const { return lower_; }
   double upper_bound() const { return upper_; }
+  int degree() const { return degree_; }
   std::ptrdiff_t bytes() const;
 
  private:
@@ -32,6 +40,7 @@ class BlockChebyshev {
   void step(float momentum, float gain, bool first);
 
   FloatBlockMatrix matrix_;
+  Degrees degrees_;
   int degree_;
   double lower_ = 0.0;
   double upper_ = 0.0;

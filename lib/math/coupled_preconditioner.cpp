@@ -13,8 +13,8 @@ constexpr int n_displacements = 3;
 
 }  // namespace
 
-CoupledPreconditioner::CoupledPreconditioner(const SymmetricBlockPattern& pattern, int degree)
-    : block_size_(pattern.block_size()), displacement_(pattern, n_displacements, degree) {
+CoupledPreconditioner::CoupledPreconditioner(const SymmetricBlockPattern& pattern, BlockChebyshev::Degrees degrees)
+    : block_size_(pattern.block_size()), displacement_(pattern, n_displacements, degrees) {
   MULDI_EXPECT(block_size_ == 3 || block_size_ == 4, "three displacements and at most one potential");
 }
 

@@ -18,8 +18,8 @@ enum class PotentialSign {
 /// constrained rows are those of the identity. The coupling of the two parts is left to the iteration.
 class CoupledPreconditioner {
  public:
-  /// `degree` of the Chebyshev polynomial. The pattern must outlive the object.
-  explicit CoupledPreconditioner(const SymmetricBlockPattern& pattern, int degree = 6);
+  /// `degrees` of the Chebyshev polynomial. The pattern must outlive the object.
+  explicit CoupledPreconditioner(const SymmetricBlockPattern& pattern, BlockChebyshev::Degrees degrees = {});
 
   /// Takes a new matrix. The multigrid is set up at the first time and when `new_potential` is set: it serves until the
   /// permittivity or the shape of the mesh changes much. False: the displacement part is not positive definite.

@@ -82,6 +82,14 @@ std::string Model::inadmissible_anywhere(const Eigen::VectorXd& q) const {
   return reason;
 }
 
+std::string Model::unresolved(const Eigen::VectorXd& q) const {
+  std::string reason;
+  for (const auto& part : substructures) {
+    if (reason.empty()) reason = part->unresolved(q);
+  }
+  return reason;
+}
+
 std::string Model::body_at(int node) const {
   const auto at = static_cast<std::size_t>(node);
   return node >= 0 && at < body_names.size() ? "body '" + body_names[at] + "'" : "a body";

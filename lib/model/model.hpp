@@ -70,6 +70,8 @@ struct Model {
   std::string inadmissible(const Eigen::VectorXd& q) const;
   /// The same with the substructures, which costs as much as their forces.
   std::string inadmissible_anywhere(const Eigen::VectorXd& q) const;
+  /// What the first substructure says whose shape at q its discretisation does not resolve, or empty.
+  std::string unresolved(const Eigen::VectorXd& q) const;
   /// How messages call the body that is this node: by its name, if the model knows it.
   std::string body_at(int node) const;
   /// What the first guard says that is not silent, or empty.

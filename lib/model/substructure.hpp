@@ -144,9 +144,11 @@ class Substructure : public IntervalTerm {
   /// which in the rows of constraint forces are the forces of the ties on the part; so call it once, before a
   /// projection, and keep_free after it.
   virtual void gather(Eigen::VectorXd& rows) const = 0;
-  /// Writes into a velocity or an increment (n_q) what is not free: zero where positions are prescribed, A times the
-  /// entries of the bodies where they follow these.
-  virtual void follow(Eigen::VectorXd& velocity) const = 0;
+  /// Writes into a velocity (n_q) what is not free: where positions are prescribed theirs under controls that change at
+  /// the rates `du` (n_controls; empty: held), where they follow bodies A times the entries of these.
+  virtual void follow(std::span<const double> du, Eigen::VectorXd& velocity) const = 0;
+  /// Work of `force` (n_q) at the positions that are prescribed along `motion` (n_q).
+  virtual double work_of_prescribed(const Eigen::VectorXd& force, const Eigen::VectorXd& motion) const = 0;
   /// rows += the impulse on the slice that the multipliers of the velocity equations need: with `impulse` (n_y) as
   /// their solver gives it, M v + this = p but for what holds prescribed positions.
   virtual void add_multiplier_impulse(const Eigen::VectorXd& q, const Eigen::VectorXd& impulse,
@@ -159,6 +161,12 @@ class Substructure : public IntervalTerm {
   virtual bool add_velocity_rows(const Eigen::VectorXd& q, const Eigen::VectorXd& v, Eigen::VectorXd& h) const {
     static_cast<void>(q), static_cast<void>(v), static_cast<void>(h);
     return false;
+  }
+
+  /// Empty, or where a configuration q (n_q) that can be computed has a shape that the discretisation does not resolve.
+  virtual std::string unresolved(const Eigen::VectorXd& q) const {
+    static_cast<void>(q);
+    return {};
   }
 
   /// What iterative evaluations start from, and which thus decides their last bits: a restart needs it.

@@ -204,10 +204,16 @@ void close_loops(const scene::Scene& scene, const build::BuiltModel& built, cons
                            gap))});
 }
 
+/// Positions of a solid in q, also of one that others are attached to.
+model::Slice slice_of(const fem::SolidRecords& records) {
+  return {.first = records.solid().q_slice().first + 3 * static_cast<Eigen::Index>(records.member().first_node),
+          .size = 3 * static_cast<Eigen::Index>(records.member().n_nodes)};
+}
+
 /// Adds to v (n_q) the velocities of solids: with the bodies that they are tied to, which move by `rates`, and the
-/// rigid motions that the scene gives to them; prescribed positions do not take part.
+/// rigid motions that the scene gives to them; what is prescribed moves as the controls say, which change at rates du.
 void add_velocities(const scene::Scene& scene, const build::BuiltModel& built, const variational::State& state,
-                    const Eigen::VectorXd& rates, Eigen::VectorXd& v) {
+                    const Eigen::VectorXd& rates, std::span<const double> du, Eigen::VectorXd& v) {
   if (built.solids.empty()) return;
   LedSolids led(built, scene.solver.tolerance);
   if (led.any() && !rates.isZero(0.0)) {
@@ -216,24 +222,25 @@ void add_velocities(const scene::Scene& scene, const build::BuiltModel& built, c
     Eigen::VectorXd of_bodies = Eigen::VectorXd::Zero(v.size());
     built.manifold->lift(*frame, rates, of_bodies);
     led.add_velocities({.x = state.x, .multipliers = {}, .q = state.q, .y = state.y}, of_bodies);
-    for (const fem::Solid* solid : built.solids) {
-      const bool given = scene.initial.solids.find(solid->data().name) != nullptr;
-      const model::Slice& slice = solid->q_slice();
+    for (const auto& records : built.solid_records) {
+      const bool given = scene.initial.solids.find(records->member().name) != nullptr;
+      const model::Slice slice = slice_of(*records);
       if (!given) v.segment(slice.first, slice.size) += of_bodies.segment(slice.first, slice.size);
     }
     v.head(built.manifold->n_q()) += of_bodies.head(built.manifold->n_q());
   }
   const Eigen::VectorXd& q = state.q;
   for (const auto& entry : scene.initial.solids) {
-    const fem::Solid& solid = *built.solids[static_cast<std::size_t>(scene.solids.index(entry.name))];
+    const fem::SolidRecords& solid = *built.solid_records[static_cast<std::size_t>(scene.solids.index(entry.name))];
+    const model::Slice slice = slice_of(solid);
     const Eigen::Vector3d velocity = build::to_eigen(entry.value.velocity.value_or(base::Vec3{}));
     const Eigen::Vector3d omega = build::to_eigen(entry.value.angular_velocity.value_or(base::Vec3{}));
-    const Eigen::Vector3d centre = solid.centre_of_mass(q);
-    for (Eigen::Index first = solid.q_slice().first; first < solid.q_slice().end(); first += 3) {
+    const Eigen::Vector3d centre = solid.solid().centre_of_mass(solid.member(), q);
+    for (Eigen::Index first = slice.first; first < slice.end(); first += 3) {
       v.segment<3>(first) += velocity + omega.cross(Eigen::Vector3d(q.segment<3>(first)) - centre);
     }
   }
-  for (const auto& part : built.model->substructures) part->follow(v);
+  for (const auto& part : built.model->substructures) part->follow(du, v);
 }
 
 }  // namespace
@@ -354,7 +361,10 @@ Outcome initial_state(const scene::Scene& scene, const build::BuiltModel& built,
   rates = rates.size() == 0 ? added : Eigen::VectorXd(rates + added);
   manifold.configuration(state.x, state.q);
   Eigen::VectorXd v = values.v.size() > 0 ? values.v : Eigen::VectorXd(Eigen::VectorXd::Zero(built.model->n_q()));
-  add_velocities(scene, built, state, added, v);
+  std::optional<variational::ControlRates> control_rates;
+  std::span<const double> du;
+  if (scene.dynamics) du = control_rates.emplace(*built.model, scene.dynamics->step).at(0.0, variational::Side::after);
+  add_velocities(scene, built, state, added, du, v);
   const auto frame = manifold.make_frame();
   manifold.update(state.x, state.q, *frame);
   if (!scene.initial.momentum.empty()) rates += rates_of_momentum(built, state.x, wanted_momenta(scene, built));
@@ -362,9 +372,12 @@ Outcome initial_state(const scene::Scene& scene, const build::BuiltModel& built,
   manifold.lift(*frame, rates, v);
   variational::NodeEvaluator nodes(*built.model, "auto", built.solid_linear);
   nodes.momentum_of(state.q, v, u, state.p);
-  if (!scene.initial.momentum.empty() && !built.solids.empty() && nodes.evaluate(state, u, u, values)) {
+  const bool given_momenta = !scene.initial.momentum.empty() && !built.solids.empty();
+  if ((given_momenta || nodes.moves()) && nodes.evaluate(state, u, u, values, du)) {
     rates = values.rate;
     v = values.v;
+    // What starts to move at t = 0 has done its work on what keeps its volume before.
+    if (nodes.moves()) state.p = values.momentum;
   }
   state.step = 0;
   state.t = 0.0;

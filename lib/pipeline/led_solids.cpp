@@ -37,6 +37,7 @@ bool LedSolids::linearise(const statics::StaticState& state) {
   forces_.stage.setZero();
   for (const auto& part : model_.substructures) part->add_forces(at, forces_);
   if (!(forces_.margin > 0.0)) return false;
+  parts_->gather(forces_.force);
   parts_->keep_free(forces_.force);
   return parts_->factorise(at);
 }

@@ -82,7 +82,8 @@ void NodeRows::declare_dynamics() {
   channel_.electric_after =
       declare("energy/electric_after", {}, dim::energy, "electric enthalpy under the controls of the next interval");
   channel_.dissipated = declare("energy/dissipated", {}, dim::energy, "energy dissipated since t = 0");
-  channel_.external = declare("energy/external", {}, dim::energy, "work of loads and drives since t = 0");
+  channel_.external =
+      declare("energy/external", {}, dim::energy, "work of loads, drives and prescribed motions since t = 0");
   channel_.source = declare("energy/source", {}, dim::energy, "work of changes of the controls since t = 0");
   channel_.balance = declare("energy/balance", {}, dim::energy,
                              "total + dissipated - external - source, less its value at t = 0; zero for dt to 0");

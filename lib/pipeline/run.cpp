@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "base/text.hpp"
+#include "build/stable_step.hpp"
 #include "pipeline/checkpoint.hpp"
 #include "pipeline/initial_state.hpp"
 #include "pipeline/loop_sentence.hpp"
@@ -65,6 +66,7 @@ class DynamicsRun {
     callbacks.record = [&](const variational::NodeRecord& node) {
       rows_.write(node);
       advise(node, context);
+      check_step(node, context);
       if (context.progress) context.progress(node.step, options_.steps, node.t);
     };
     callbacks.checkpoint = [&](const variational::State& state, const variational::Ledger& ledger,
@@ -139,7 +141,31 @@ class DynamicsRun {
     context.warn(base::format("at t = {:.6g} {}: {}", node.t, scene_.units.time(), sentence));
   }
 
+  /// Says once that the step is longer than the stable one of cells of constant volume. The explicit integrator knows
+  /// its own bound.
+  void check_step(const variational::NodeRecord& node, const RunContext& context) {
+    const bool looks = rows_seen_++ % rows_between_looks == 0;
+    if (!looks || step_told_ || node.last || !context.warn || built_.solids.empty() ||
+        options_.integrator == variational::Integrator::explicit_scheme) {
+      return;
+    }
+    const build::StableStep stable = build::exceeded_step(built_, node.state.q, node.y_after, options_.dt);
+    if (stable.name.empty()) return;
+    step_told_ = true;
+    const std::string& unit = scene_.units.time();
+    context.warn(base::format(
+        "at t = {:.6g} {}: the step of {:.6g} {} is longer than about {:.3g} {}, the stable one of {}: {:.3g} {} times "
+        "the root of density by the stress {:.3g}): errors that alternate from step to step grow; take a smaller "
+        "dynamics.step, or formulation: displacement",
+        node.t, unit, options_.dt, unit, stable.step, unit, stable.name, stable.length, scene_.units.length(),
+        stable.stress));
+  }
+
+  static constexpr long rows_between_looks = 8;
+
   bool advised_ = false;
+  bool step_told_ = false;
+  long rows_seen_ = 0;
   const scene::Scene& scene_;
   const build::BuiltModel& built_;
   results::Recorder& recorder_;

@@ -4,7 +4,6 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "build/squeezed_cell.hpp"
 #include "pipeline/initial_state.hpp"
 
 namespace muldi::pipeline {
@@ -110,9 +109,11 @@ EquilibriumRows::Stretched EquilibriumRows::least_stretched() {
              .stretch = stretch};
   }
   if (!least.where.empty()) return least;
-  const build::SqueezedCell cell = build::squeezed_cell(built_, last_.q);
+  const build::SqueezedCell cell = most_squeezed();
   return {.where = cell.name, .stretch = cell.stretch};
 }
+
+build::SqueezedCell EquilibriumRows::most_squeezed() const { return build::squeezed_cell(built_, last_.q); }
 
 StaticsRun::StaticsRun(const scene::Scene& scene, const build::BuiltModel& built, results::Recorder& recorder)
     : scene_(scene), built_(built), recorder_(recorder), rows_(recorder, scene, built) {}
@@ -167,6 +168,15 @@ void StaticsRun::report_changes(const std::vector<statics::BranchChange>& change
   }
 }
 
+std::string StaticsRun::sentence_of(const statics::SweepResult& result) {
+  using End = statics::SweepResult::End;
+  if (result.end == End::loss_of_equilibrium && result.last_good != result.first_bad) return loss_sentence(result);
+  if (result.end != End::no_convergence) return result.sentence;
+  const build::SqueezedCell cell = rows_.most_squeezed();
+  if (cell.name.empty()) return result.sentence;
+  return base::format("{}; there {} is at stretch {:.4g}", result.sentence, cell.name, cell.stretch);
+}
+
 std::string StaticsRun::loss_sentence(const statics::SweepResult& result) {
   std::string text = result.sentence;
   if (scene_.statics->control) {
@@ -218,14 +228,15 @@ Outcome StaticsRun::run(RunContext& context) {
   }
   report_critical(result.critical, context);
   report_changes(result.changes, context);
+  // A curve may end before its range does, of itself.
+  if (result.end == End::completed && !result.sentence.empty() && context.warn) {
+    context.warn("statics: " + result.sentence);
+  }
   const auto status = result.end == End::completed             ? variational::Status::completed
                       : result.end == End::interrupted         ? variational::Status::interrupted
                       : result.end == End::loss_of_equilibrium ? variational::Status::loss_of_equilibrium
                                                                : variational::Status::no_convergence;
-  const bool lost = result.end == End::loss_of_equilibrium && result.last_good != result.first_bad;
-  return {.status = status,
-          .sentence = lost ? loss_sentence(result) : result.sentence,
-          .time = std::numeric_limits<double>::quiet_NaN()};
+  return {.status = status, .sentence = sentence_of(result), .time = std::numeric_limits<double>::quiet_NaN()};
 }
 
 }  // namespace muldi::pipeline

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "build/built_model.hpp"
+#include "build/squeezed_cell.hpp"
 #include "model/supply.hpp"
 #include "pipeline/node_rows.hpp"
 #include "pipeline/outcome.hpp"
@@ -35,6 +36,8 @@ class EquilibriumRows {
   /// The muscle that is shortest for its rest length at the last row; without muscles the cell that is squeezed most in
   /// some direction; empty without either.
   Stretched least_stretched();
+  /// At the last row.
+  build::SqueezedCell most_squeezed() const;
 
  private:
   void look_at(const statics::SweepPoint& point);
@@ -67,6 +70,7 @@ class StaticsRun {
   Outcome run(RunContext& context);
 
  private:
+  std::string sentence_of(const statics::SweepResult& result);
   /// Where the equilibrium was lost, as the user speaks of it.
   std::string loss_sentence(const statics::SweepResult& result);
   /// Numbers of the load with its unit and the control that it belongs to, where it does to one.

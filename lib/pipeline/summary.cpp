@@ -83,10 +83,11 @@ std::string potentials_text(const fem::SolidUnknowns& unknowns) {
 /// Positions of a tied solid that are no unknowns.
 std::string ties_text(const fem::Solid& solid) {
   const fem::SolidDescription& data = solid.data();
-  if (data.ties.empty() && !data.tied_to_ground) return {};
+  std::string text;
+  if (!data.bonds.empty()) text += base::format(", {} eliminated by attachment", 3 * data.bonds.size());
+  if (data.ties.empty() && !data.tied_to_ground) return text;
   std::string hosts;
   for (const fem::Host& host : data.hosts) hosts += (hosts.empty() ? "" : " ") + host.name;
-  std::string text;
   if (!data.ties.empty()) text += base::format(", {} eliminated by ties to {}", 3 * data.ties.size(), hosts);
   if (!data.displacements.empty()) text += base::format(", {} prescribed", data.displacements.size());
   return text;
@@ -94,7 +95,10 @@ std::string ties_text(const fem::Solid& solid) {
 
 std::string solid_text(const scene::Scene& scene, const fem::Solid& solid, const model::SolverSize& size) {
   const fem::SolidUnknowns& unknowns = solid.unknowns();
-  const std::string kind = solid.part().starts_with("muscles/") ? "muscle" : "solid";
+  const std::size_t n_members = solid.members().size();
+  const std::string kind = n_members > 1 ? base::format("{} solids attached to one another,", n_members)
+                           : solid.part(solid.members().front()).starts_with("muscles/") ? "muscle"
+                                                                                         : "solid";
   std::string text =
       base::format("  {} {}: {} nodes, {} cells, {}\n", kind, solid.data().name, solid.elements().n_nodes(),
                    solid.elements().n_cells(), word_of(solid.data().formulation));
@@ -119,7 +123,7 @@ std::string solids_text(const build::BuiltModel& built) {
     nodes += solid->elements().n_nodes();
     cells += solid->elements().n_cells();
     free += solid->unknowns().n_free_positions();
-    tied += 3 * static_cast<Eigen::Index>(solid->data().ties.size());
+    tied += 3 * static_cast<Eigen::Index>(solid->data().ties.size() + solid->data().bonds.size());
     prescribed += static_cast<Eigen::Index>(solid->data().displacements.size());
     potentials += solid->unknowns().n_free_potentials();
     pressures += solid->n_pressures();

@@ -181,6 +181,17 @@ void SolidCheck::check_attachment(const Entry<Solid>& solid, const SolidAttachme
   }
 }
 
+bool SolidCheck::is_joined(const Entry<Solid>& solid) const {
+  const auto attaches = [](const Solid& one, const std::string* to) {
+    return std::any_of(one.attach.begin(), one.attach.end(), [to](const SolidAttachment& said) {
+      return said.solid && (to == nullptr || said.solid->name == *to);
+    });
+  };
+  return attaches(solid.value, nullptr) ||
+         std::any_of(scene_.solids.begin(), scene_.solids.end(),
+                     [&](const Entry<Solid>& other) { return attaches(other.value, &solid.name); });
+}
+
 void SolidCheck::check_field(const Entry<Solid>& solid) {
   if (!has_field(solid.value)) return;
   bool dielectric = false;
@@ -202,7 +213,9 @@ void SolidCheck::check_field(const Entry<Solid>& solid) {
       std::any_of(conditions.begin(), conditions.end(), [](const Condition& c) { return c.potential.has_value(); }) ||
       std::any_of(electrodes.begin(), electrodes.end(),
                   [](const Entry<Electrode>& e) { return e.value.potential || !e.value.potentials.empty(); });
-  if (!fixed) error(solid.origin, "its potential is nowhere fixed: give a condition or an electrode a `potential`");
+  // The potential may come through what it is attached to: that is seen once the meshes are.
+  if (!fixed && !is_joined(solid))
+    error(solid.origin, "its potential is nowhere fixed: give a condition or an electrode a `potential`");
 }
 
 void SolidCheck::check_where(const Solid& solid, const Where& where, Need need) {

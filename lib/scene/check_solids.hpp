@@ -31,6 +31,8 @@ class SolidCheck {
   void check_alternating(const Solid& solid, const Electrode& electrode);
   void check_attachment(const Entry<Solid>& solid, const SolidAttachment& attachment);
   void check_field(const Entry<Solid>& solid);
+  /// Whether it is attached to another solid, or another to it.
+  bool is_joined(const Entry<Solid>& solid) const;
   void check_where(const Solid& solid, const Where& where, Need need);
   /// Where of a solid that is named, if it exists.
   void check_region(const ProbeRegion& region, Need need);

@@ -139,7 +139,8 @@ struct Electrode {
   friend bool operator==(const Electrode&, const Electrode&) = default;
 };
 
-/// Ties nodes of a solid to a body, or to another solid.
+/// Ties nodes of a solid to a body, or to another solid: there each becomes one with the corner that it meets, or a
+/// weighted sum of the corners of the face that it lies on, as it is in the scene pose.
 struct SolidAttachment {
   Where where = {};
   std::optional<BodyName> body = {};  ///< exactly one of body and solid
@@ -151,10 +152,20 @@ struct SolidAttachment {
   static void describe(Self& self, Visit& visit) {
     using namespace base;
     constexpr auto optional = Need::optional;
-    visit(Field{.key = "where", .doc = "nodes that are fixed to the other"}, self.where);
+    visit(Field{.key = "where",
+                .doc = "nodes that are fixed to the other, for the whole motion and as they are in the scene pose; "
+                       "between solids of the finer mesh where the meshes differ"},
+          self.where);
     visit(Field{.key = "body", .doc = "name of a body, or `ground`", .need = optional}, self.body);
-    visit(Field{.key = "solid", .doc = "name of another solid, instead of a body", .need = optional}, self.solid);
-    visit(Field{.key = "where_other", .doc = "faces of the other solid to which the nodes are fixed", .need = optional},
+    visit(Field{.key = "solid",
+                .doc = "name of another solid, instead of a body; the potential of two dielectrics is continuous "
+                       "across the joint, and an electrode there is one of both",
+                .need = optional},
+          self.solid);
+    visit(Field{.key = "where_other",
+                .doc = "faces of the other solid on which the nodes lie, within 1e-6 of the size of the attached one: "
+                       "nodes that meet become one, others follow the four corners of their face",
+                .need = optional},
           self.where_other);
   }
   friend bool operator==(const SolidAttachment&, const SolidAttachment&) = default;

@@ -59,6 +59,7 @@ model::IntervalPoint EquilibriumSolver::point(const StaticState& state, std::spa
 }
 
 void EquilibriumSolver::evaluate(const StaticState& state, std::span<const double> u) {
+  linearised_.u.clear();
   manifold_.configuration(state.x, q_);
   if (!parts_.empty()) {
     parts_.copy_slices(state.q, q_);
@@ -87,6 +88,7 @@ void EquilibriumSolver::project_bracket() {
 }
 
 void EquilibriumSolver::linearise(const StaticState& state, std::span<const double> u) {
+  if (is_linearised_at(state, u)) return;
   evaluate(state, u);
   measure_residual();
   model_.tangent(point(state, u), model::TangentWeights::stiffness(), K_);
@@ -101,6 +103,13 @@ void EquilibriumSolver::linearise(const StaticState& state, std::span<const doub
   A_.diagonal() += diagonal_;
   manifold_.add_curvature(*frame_, total_, state.multipliers, A_);
   manifold_.project_constraints(*frame_, loop_basis(), B_);
+  linearised_ = {.state = state, .u = {u.begin(), u.end()}};
+}
+
+bool EquilibriumSolver::is_linearised_at(const StaticState& state, std::span<const double> u) const {
+  const StaticState& last = linearised_.state;
+  return !parts_.empty() && !linearised_.u.empty() && std::equal(u.begin(), u.end(), linearised_.u.begin()) &&
+         last.x == state.x && last.multipliers == state.multipliers && last.y == state.y && last.q == state.q;
 }
 
 Stability EquilibriumSolver::stability() const {
@@ -191,6 +200,7 @@ double EquilibriumSolver::distance(const StaticState& a, const StaticState& b) {
 
 double EquilibriumSolver::line_search(const StaticState& start, StaticState& trial, std::span<const double> u,
                                       std::string& inadmissible) {
+  linearised_.u.clear();
   const double begin = r_.dot(step_.w);
   double factor = 1.0;
   for (int halving = 0; halving <= max_halvings; ++halving, factor *= 0.5) {
@@ -228,6 +238,7 @@ std::string EquilibriumSolver::limit_of_increment() {
   if (parts_.empty() || !step_.q.allFinite()) return {};
   const double length = length_of(step_);
   if (!(length > 0.0)) return {};
+  linearised_.u.clear();
   // Along the last increment, in steps that are taken whole, until something gives way.
   for (int k = 1; k <= most_probes; ++k) {
     q_ += step_.q / length;
@@ -242,6 +253,7 @@ EquilibriumReport EquilibriumSolver::iterate(StaticState& state, std::span<const
   StaticState at = state;
   StaticState trial = state;
   double previous = 0.0;
+  linearised_.u.clear();
   manifold_.configuration(at.x, q_);
   report.inadmissible = model_.inadmissible(q_);
   if (!report.inadmissible.empty()) return report;

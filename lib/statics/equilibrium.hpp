@@ -10,6 +10,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "model/model.hpp"
 #include "model/substructure_set.hpp"
@@ -88,7 +89,7 @@ class EquilibriumSolver {
   /// b - a, of rates and substructures.
   StaticMotion difference(const StaticState& a, const StaticState& b) const;
   /// Gives a linearised equilibrium the values that are prescribed, and multipliers of least norm.
-  void settle(StaticState& state) const;
+  void settle(StaticState& state);
   /// Why the terms cannot be evaluated at a state, or empty; the second looks into substructures and uses the placed
   /// values of the linearised state.
   std::string why_inadmissible(const StaticState& state);
@@ -108,6 +109,9 @@ class EquilibriumSolver {
   /// r_ from bracket_ and the forces on the minimal rates.
   void project_bracket();
   void newton_increment();
+  /// True if nothing has been evaluated, and no configuration written, since linearise() was there, so that factors and
+  /// answers of the parts stand.
+  bool is_linearised_at(const StaticState& state, std::span<const double> u) const;
   /// Relative to the longest that is taken whole, without its stage unknowns, in which the equations are nearly linear.
   double length_of(const StaticMotion& motion) const;
   void scale_increment(double factor);
@@ -141,6 +145,10 @@ class EquilibriumSolver {
   Eigen::MatrixXd B_;
   Eigen::VectorXd y_;
   StaticMotion step_;
+  struct {
+    StaticState state = {};
+    std::vector<double> u = {};  ///< empty: nowhere
+  } linearised_;
   double terms_ = 0.0;
   double residual_ = 0.0;
   std::string shortened_by_;  // why a step was not taken whole, the last time

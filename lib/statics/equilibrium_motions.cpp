@@ -24,6 +24,7 @@ Eigen::VectorXd EquilibriumSolver::load_rate(std::span<const double> u, std::spa
     on_rates += du[c] * one_on_rates;
   }
   if (!parts_.empty()) {
+    linearised_.u.clear();  // the parts answer to other right sides from here on
     Eigen::VectorXd h = Eigen::VectorXd::Zero(model_.n_y());
     parts_.add_load_rate(at, du, rows, h);
     parts_.gather(rows);
@@ -104,15 +105,17 @@ StaticMotion EquilibriumSolver::difference(const StaticState& a, const StaticSta
 }
 
 std::string EquilibriumSolver::why_inadmissible(const StaticState& state) {
+  linearised_.u.clear();
   manifold_.configuration(state.x, q_);
   return model_.inadmissible(q_);
 }
 
-void EquilibriumSolver::settle(StaticState& state) const {
+void EquilibriumSolver::settle(StaticState& state) {
   state.multipliers = loop_basis() * (loop_basis().transpose() * state.multipliers);
   if (parts_.empty()) return;
   state.q = q_;
   state.y = y_;
+  if (!linearised_.u.empty()) linearised_.state = state;
 }
 
 }  // namespace muldi::statics

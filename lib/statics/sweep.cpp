@@ -195,6 +195,10 @@ SweepResult Sweep::arc_length(StaticState& state, const SweepCallbacks& callback
     if (curve.locate(here, next, arc, critical)) result.critical.push_back(critical);
     here = std::move(next);
     if (leaves) break;
+    if (const std::string end = model_.unresolved(here.state.q); !end.empty()) {
+      result.sentence = base::format("the curve ends at the load {:.10g}: {}", here.load, end);
+      break;
+    }
     if (here.report.iterations <= 4) arc = std::min(2.0 * arc, nominal);
   }
   result.last_good = here.load;

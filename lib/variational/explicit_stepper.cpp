@@ -5,12 +5,11 @@
 #include <cmath>
 
 #include "base/text.hpp"
+#include "variational/control_rates.hpp"
 
 namespace muldi::variational {
 namespace {
 
-/// Part of a step by which positions are prescribed before its end, as Stepper has it.
-constexpr double before_end = 1e-9;
 constexpr long steps_between_checks = 1000;
 constexpr int most_lanczos_steps = 60;
 constexpr double eigenvalue_accuracy = 1e-3;

@@ -36,6 +36,7 @@ NodeEvaluator::NodeEvaluator(const model::Model& model, const std::string& linea
       scratch_(model.parts().size()) {
   forces_.force = zero_q_;
   forces_.momentum = zero_q_;
+  moves_ = parts_.moves();
   for (const auto& part : model.substructures) is_constrained_ |= part->add_velocity_rows(zero_q_, zero_q_, h_);
   if (!parts_.empty()) {
     forces_.begin = forces_.end = zero_q_;
@@ -64,7 +65,7 @@ void NodeEvaluator::residual_of(const State& state, const NodeValues& at) {
   const model::Manifold& manifold = *model_.manifold;
   bracket_ = state.p;
   h_.setZero();
-  if (is_constrained_ && !at.v.isZero(0.0)) {
+  if (!at.v.isZero(0.0)) {
     model_.forces({.q0 = state.q, .q1 = state.q, .q = state.q, .v = at.v, .u = {}}, forces_);
     bracket_ -= forces_.momentum;
     rest_.setZero();
@@ -96,11 +97,14 @@ double NodeEvaluator::improve(NodeValues& out) {
   return size > 0.0 ? dv_.lpNorm<Eigen::Infinity>() / size : 0.0;
 }
 
-bool NodeEvaluator::solve_velocities(const State& state, NodeValues& out) {
+bool NodeEvaluator::solve_velocities(const State& state, std::span<const double> du, NodeValues& out) {
   for (const bool anew : {false, true}) {
     if (!parts_.empty() && !factorise_parts(state, anew)) return false;
     out.rate.setZero();
     out.v.setZero();
+    if (moves_) {
+      for (const auto& part : model_.substructures) part->follow(du, out.v);
+    }
     dy_.setZero();
     lambda_.setZero();
     double previous = 0.0;
@@ -125,7 +129,7 @@ bool NodeEvaluator::solve_velocities(const State& state, NodeValues& out) {
 }
 
 bool NodeEvaluator::evaluate(const State& state, std::span<const double> u_before, std::span<const double> u_after,
-                             NodeValues& out) {
+                             NodeValues& out, std::span<const double> du) {
   const model::Manifold& manifold = *model_.manifold;
   out.rate.resize(manifold.n_v());
   out.v.resize(model_.n_q());
@@ -135,7 +139,7 @@ bool NodeEvaluator::evaluate(const State& state, std::span<const double> u_befor
   manifold.choose_loop_rows(*frame_);
   model_.tangent({.q0 = state.q, .q1 = state.q, .q = state.q, .v = zero_q_, .u = u_before},
                  model::TangentWeights::mass(), M_);
-  if (!solve_velocities(state, out)) return false;
+  if (!solve_velocities(state, du, out)) return false;
   momentum_of(state.q, out.v, u_before, out.momentum);
   model_.momentum_maps(state.q, out.momentum, out.linear_momentum, out.angular_momentum);
   const std::span<const double> x(state.x.data(), static_cast<std::size_t>(state.x.size()));

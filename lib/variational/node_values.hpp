@@ -26,9 +26,13 @@ class NodeEvaluator {
   /// `linear`: solver kind, as StepOptions::linear.
   NodeEvaluator(const model::Model& model, const std::string& linear, const std::string& substructures = "auto");
 
-  /// Velocities, energies and momenta of `state`; `u_before` and `u_after`: controls of the intervals on both sides.
+  /// Velocities, energies and momenta of `state`; `u_before` and `u_after`: controls of the intervals on both sides,
+  /// `du`: their rates at the node, for positions that they prescribe (empty: held).
   /// False if the mass matrix is singular on the free motions.
-  bool evaluate(const State& state, std::span<const double> u_before, std::span<const double> u_after, NodeValues& out);
+  bool evaluate(const State& state, std::span<const double> u_before, std::span<const double> u_after, NodeValues& out,
+                std::span<const double> du = {});
+  /// True if positions are prescribed by controls, so that their rates matter.
+  bool moves() const { return moves_; }
 
   /// Multipliers of the loop rows that make the last momentum consistent (n_loop_rows), an impulse of least norm.
   const Eigen::VectorXd& loop_impulse() const { return lambda_; }
@@ -44,7 +48,7 @@ class NodeEvaluator {
  private:
   /// M v + constraint impulses = p. Constraints inside parts are solved for by passes with exact residuals and a factor
   /// of an earlier node; without such constraints the first pass is exact.
-  bool solve_velocities(const State& state, NodeValues& out);
+  bool solve_velocities(const State& state, std::span<const double> du, NodeValues& out);
   bool factorise_parts(const State& state, bool anew);
   void residual_of(const State& state, const NodeValues& at);
   /// Adds the solution for the residual; returns its size relative to that of the velocities.
@@ -71,6 +75,7 @@ class NodeEvaluator {
   Eigen::VectorXd h_;
   Eigen::VectorXd factor_q_;  // where the parts were factorised
   bool is_constrained_ = false;
+  bool moves_ = false;
   std::vector<model::Energy> scratch_;
 };
 

@@ -154,6 +154,8 @@ bool Stepper::retreat(StepReport& report) {
     if (report.sentence.empty()) report.sentence = "an element of a solid collapses";
     return false;
   }
+  if (inverted_.empty()) inverted_ = model_.inadmissible_anywhere(q_mid_);
+  if (inverted_.empty()) inverted_ = model_.inadmissible_anywhere(q_);
   scale_increment(0.5);
   move();
   return true;
@@ -275,6 +277,7 @@ bool Stepper::choose_loop_rows(StepReport& report) {
 
 bool Stepper::attempt(const State& state, std::span<const double> u, Attempt how, StepReport& report) {
   report.sentence.clear();
+  inverted_.clear();
   start_at(state, how.extrapolate, u);
   if (how.extrapolate && !model_.inadmissible(q_).empty()) return false;
   return newton(state, u, how.keep_factors, report);
@@ -287,6 +290,8 @@ void Stepper::blame(StepReport& report) const {
   if (!why.empty() || parts_.empty()) return;
   why = model_.inadmissible_anywhere(q_mid_);
   if (why.empty()) why = model_.inadmissible_anywhere(q_);
+  // A collapse may also leave iterations to and fro at its brink.
+  if (why.empty() && !inverted_.empty()) why = inverted_ + ", to which the iterations of the step come back";
   if (why.empty()) return;
   report.status = Status::inverted_element;
   report.sentence = why;

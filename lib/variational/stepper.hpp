@@ -126,6 +126,7 @@ class Stepper final : public StepMethod {
   double accuracy_ = 0.0;   // of such increments
   bool evaluated_ = false;  // forces_ are those of the iterate
   int halvings_ = 0;
+  std::string inverted_;  // what the iterates of this attempt ran into
   double reference_regularity_ = 1.0;
 };
 

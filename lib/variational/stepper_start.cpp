@@ -1,15 +1,10 @@
 /// Where the iterations of a step start.
 #include <algorithm>
 
+#include "variational/control_rates.hpp"
 #include "variational/stepper.hpp"
 
 namespace muldi::variational {
-namespace {
-
-/// Part of a step by which positions are prescribed before its end: where a held control jumps, its old value counts.
-constexpr double before_end = 1e-9;
-
-}  // namespace
 
 void Stepper::start_at(const State& state, bool extrapolate, std::span<const double> u) {
   if (extrapolate) {

@@ -22,6 +22,7 @@ TimeLoop::TimeLoop(const model::Model& model, LoopOptions options)
       options_(std::move(options)),
       stepper_(make_method(model, options_)),
       nodes_(model, options_.step.linear, options_.step.substructures),
+      control_rates_(model, options_.dt),
       supply_(model),
       looks_(first_look),
       u_before_(model.controls.size()),
@@ -54,7 +55,8 @@ LoopResult TimeLoop::run(State& state, Ledger& ledger, StepReport& last, const L
     const bool recorded = state.step % options_.record_every == 0;
     if (recorded && callbacks.checkpoint) callbacks.checkpoint(state, ledger, last);
     if (recorded || state.step == 0) {
-      if (!nodes_.evaluate(state, u_before_, u_, values_)) {
+      const Side side = state.step == 0 ? Side::after : Side::both;
+      if (!nodes_.evaluate(state, u_before_, u_, values_, rates_at(state, side))) {
         result.status = Status::no_convergence;
         result.sentence = "the mass matrix is singular on the free motions: a body without mass or inertia moves";
         break;
@@ -76,10 +78,13 @@ LoopResult TimeLoop::run(State& state, Ledger& ledger, StepReport& last, const L
       state = before_;
       break;
     }
+    // Prescribed motions do work over both intervals beside a node with the force there: R_n . (q_n+1 - q_n-1)/2.
+    if (nodes_.moves() && before_.step > 0) ledger.external += half_work(stepper_->constraint_force(), before_);
     if (recorded) record(callbacks, before_, ledger, last, {stepper_->constraint_force(), state.multipliers, state.y});
     last = report;
     ledger.dissipated += report.work.dissipated;
     ledger.external += report.work.external;
+    if (nodes_.moves()) ledger.external += half_work(stepper_->constraint_force(), state);
     ledger.source += jump;
     if (supply_.is_kept()) ledger.supply = supply_after_;
     ++result.statistics.steps;
@@ -107,6 +112,16 @@ void TimeLoop::book_supply(const State& state, Ledger& ledger) {
   if (u_ == u_before_) return;
   supply_.stand(look(state, u_before_));
   supply_.change(look(state, u_), supply_after_);
+}
+
+std::span<const double> TimeLoop::rates_at(const State& state, Side side) {
+  return nodes_.moves() ? control_rates_.at(state.t, side) : std::span<const double>();
+}
+
+double TimeLoop::half_work(const Eigen::VectorXd& force, const State& state) const {
+  double work = 0.0;
+  for (const auto& part : model_.substructures) work += 0.5 * part->work_of_prescribed(force, state.advance);
+  return work;
 }
 
 model::NodeView TimeLoop::look(const State& state, const std::vector<double>& u) {
@@ -168,7 +183,8 @@ void TimeLoop::record_end(const LoopCallbacks& callbacks, const State& state, Le
   controls_of(state);
   // Before the evaluation, which may leave traces in the memory of the substructures.
   if (callbacks.checkpoint) callbacks.checkpoint(state, ledger, last);
-  if (!nodes_.evaluate(state, u_before_, u_, values_)) return;
+  const Side side = state.step == 0 ? Side::after : Side::before;
+  if (!nodes_.evaluate(state, u_before_, u_, values_, rates_at(state, side))) return;
   if (state.step == 0) ledger.initial_total = values_.total.kinetic + values_.total.potential();
   if (state.step == 0 && supply_.is_kept()) book_supply(state, ledger);
   const double half = 0.5 * options_.dt;
@@ -180,7 +196,10 @@ void TimeLoop::record_end(const LoopCallbacks& callbacks, const State& state, Le
   end_force_ /= half;
   end_multipliers_ = nodes_.loop_impulse() / half;
   end_stage_ = nodes_.stage_impulse() / half;
-  record(callbacks, state, ledger, last, {end_force_, end_multipliers_, end_stage_, true});
+  // A run that goes on from here books the work of this node with the force that it finds.
+  Ledger complete = ledger;
+  if (nodes_.moves() && state.step > 0) complete.external += half_work(end_force_, state);
+  record(callbacks, state, complete, last, {end_force_, end_multipliers_, end_stage_, true});
 }
 
 }  // namespace muldi::variational

@@ -5,6 +5,7 @@
 
 #include "model/observable.hpp"
 #include "model/supply.hpp"
+#include "variational/control_rates.hpp"
 #include "variational/node_values.hpp"
 #include "variational/stepper.hpp"
 
@@ -92,7 +93,11 @@ class TimeLoop {
   };
   void record(const LoopCallbacks& callbacks, const State& state, const Ledger& ledger, const StepReport& last,
               const Reactions& reactions);
+  /// Work of the motions that are prescribed: half of an interval's by the force (n_q) at either of its nodes.
+  double half_work(const Eigen::VectorXd& force, const State& state) const;
   void record_end(const LoopCallbacks& callbacks, const State& state, Ledger& ledger, const StepReport& last);
+  /// Rates of the controls at the node, empty where nothing moves by them.
+  std::span<const double> rates_at(const State& state, Side side);
   /// True, and said in the result, if a guard of the model does not let pass this node under the controls u.
   bool refuses(const State& state, const std::vector<double>& u, LoopResult& result);
   /// What guards and sources see of a node: positions and controls; velocities may be those of an earlier node.
@@ -104,6 +109,7 @@ class TimeLoop {
   LoopOptions options_;
   std::unique_ptr<StepMethod> stepper_;
   NodeEvaluator nodes_;
+  ControlRates control_rates_;
   model::SupplyBook supply_;
   long looks_;  // serials of its views, none of which is a record's
   std::vector<double> supply_after_;

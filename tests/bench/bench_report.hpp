@@ -15,12 +15,14 @@
 
 namespace muldi::bench {
 
-/// One figure. `bound` is the figure that the project asks for, NaN if there is none; less is better.
+/// One figure. `bound` is the figure that the project asks for and `aim` the one that it wishes for, NaN if there is
+/// none; less is better.
 struct Figure {
   std::string name;
   double value = 0.0;
   std::string unit;
   double bound = std::nan("");
+  double aim = std::nan("");
 };
 
 /// A number in JSON; null where it is not finite.
@@ -78,9 +80,9 @@ class BenchReport {
     std::printf("  \"values\": [");
     for (std::size_t i = 0; i < figures_.size(); ++i) {
       const Figure& figure = figures_[i];
-      std::printf("%s\n    {\"name\": %s, \"value\": %s, \"unit\": %s, \"bound\": %s}", i == 0 ? "" : ",",
+      std::printf("%s\n    {\"name\": %s, \"value\": %s, \"unit\": %s, \"bound\": %s, \"aim\": %s}", i == 0 ? "" : ",",
                   json_text(figure.name).c_str(), json_number(figure.value).c_str(), json_text(figure.unit).c_str(),
-                  json_number(figure.bound).c_str());
+                  json_number(figure.bound).c_str(), json_number(figure.aim).c_str());
     }
     std::printf("\n  ]\n}\n");
   }

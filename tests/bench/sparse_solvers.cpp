@@ -156,7 +156,7 @@ void run_iterative(bench::BenchReport& report, int n, double sign, double bound)
     base::set_threads(threads);
     const std::string name = "cube " + std::to_string(n) + (sign > 0.0 ? ", definite, " : ", quasi-definite, ") +
                              std::to_string(threads) + (threads == 1 ? " thread, " : " threads, ");
-    math::CoupledPreconditioner preconditioner(pattern, 6);
+    math::CoupledPreconditioner preconditioner(pattern, {.least = 6, .largest = 6});
     report.add({name + "set-up", once([&] { preconditioner.update(matrix); }), "s"});
     report.add({name + "new values", once([&] { preconditioner.update(matrix); }), "s"});
     const auto a = [&](const Eigen::VectorXd& u, Eigen::VectorXd& v) { matrix.multiply(u, v); };

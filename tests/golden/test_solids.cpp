@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/text.hpp"
+#include "scene/read_scene.hpp"
 #include "scene_run.hpp"
 
 namespace muldi::golden {
@@ -179,6 +180,56 @@ TEST(ActuatorOfTwoPermittivities, TheFieldGathersInTheLowerOne) {
   EXPECT_GT(size.head(half).maxCoeff(), 1.02 * below);
 }
 
+TEST(Bimorph, BendsLikeTimoshenkosBimetalStrip) {
+  // Strips of equal heights, h together, of which one is twice as stiff: curvature 24 e/(16.5 h) for a strip that would
+  // be longer by e = eps E^2/(2 Y). By reciprocity with pure bending exact for small strains and equal Poisson ratios.
+  const double volts = 1000.0;
+  const SceneRun run("bimorph", {"controls.supply.potential=1 kV", "statics={steps: 1}"});
+  ASSERT_TRUE(run.outcome().completed()) << run.outcome().sentence;
+  const double young = 2.0 * 0.2 * 1.49;
+  const double strain = 3 * 8.8542e-12 * std::pow(volts / 0.5, 2) / (2.0 * young);
+  const double curvature = -2.0 * run.value("statics/probes/middle") / 25.0;
+  EXPECT_NEAR(curvature, 24.0 * strain / 16.5, 6e-3 * curvature);
+}
+
+TEST(Bimorph, IsTheSameAsOneMeshOfTwoMaterials) {
+  const SceneRun glued("bimorph", {"statics.steps=2"});
+  const SceneRun whole(scene::read_scene_text(
+      "muldi: 1\n"
+      "materials:\n"
+      "  silicone:\n"
+      "    density: 1e-3\n"
+      "    elastic: {model: neo_hookean, mu: 0.2, poisson: 0.49}\n"
+      "    electric: {model: ideal_dielectric, relative_permittivity: 3}\n"
+      "  sheet: {density: 1e-3, elastic: {model: neo_hookean, mu: 0.4, poisson: 0.49}}\n"
+      "controls: {supply: {potential: 20 kV}}\n"
+      "solids:\n"
+      "  strips:\n"
+      "    mesh:\n"
+      "      stack:\n"
+      "        section: {box: {size: [10, 2], cells: [20, 4]}}\n"
+      "        layers: [{part: below, thickness: 0.5, cells: 2}, {part: above, thickness: 0.5, cells: 2}]\n"
+      "    position: [5, 0, -0.5]\n"
+      "    material: {below: sheet, above: silicone}\n"
+      "    conditions:\n"
+      "      - {where: x-, displacement: [0, ~, ~]}\n"
+      "      - {where: {plane: {x: -5, y: 0}}, displacement: [~, 0, ~]}\n"
+      "      - {where: {point: [-5, 0, 0.5]}, displacement: [0, 0, 0]}\n"
+      "      - {where: {plane: {z: 0.5}}, potential: 0 V}\n"
+      "    electrodes: {top: {where: z+, potential: {control: supply}}}\n"
+      "statics: {control: supply, from: 0 V, to: 20 kV, steps: 2}\n"
+      "record: {probes: {tip: {point: \"strips@[5, 0, 0.5]\", of: displacement, along: [0, 0, 1]}}}\n",
+      "strips.yaml"));
+  ASSERT_TRUE(glued.outcome().completed()) << glued.outcome().sentence;
+  ASSERT_TRUE(whole.outcome().completed()) << whole.outcome().sentence;
+  const double tip = whole.value("statics/probes/tip");
+  EXPECT_LT(tip, -3.0);
+  EXPECT_NEAR(glued.value("statics/probes/tip"), tip, 1e-9);
+  const double charge = whole.value("statics/electrodes/strips.top/charge");
+  EXPECT_NEAR(glued.value("statics/probes/charge"), charge, 1e-10 * charge);
+  EXPECT_NEAR(glued.value("statics/energy/total"), whole.value("statics/energy/total"), 1e-10);
+}
+
 TEST(CookMembrane, LocksLikeTheIndependentProgramAndOtherwiseConvergesWithIt) {
   // OpenGeoSys with the same law and mesh: plain quadrilaterals 2.8406922 mm, F-bar 6.7463 mm on 10 cells a side (its
   // limit, 6.9 mm); an element mean of the dilatation is not F-bar.
@@ -200,6 +251,23 @@ TEST(RoundActuatorClamped, ContractsLessThanTheFreeOne) {
   EXPECT_GT(clamped, free);
   EXPECT_LT((20.0 - clamped) / (20.0 - free), 0.995);
   EXPECT_GT((20.0 - clamped) / (20.0 - free), 0.95);  // slightly, as published
+}
+
+/// Viscous stress of a uniaxial stretch that keeps the volume: 3/2 eta L'/L, over a period of L = l0 + a sin.
+TEST(DynamicMechanicalAnalysis, TurnsTheWorkOfTheMachineIntoTheLossOfTheClosedForm) {
+  const double omega = 2 * std::numbers::pi * 5e-3, l0 = 1.1, a = 0.1;
+  const double loss = 3 * std::numbers::pi * 0.75 * omega * 4000.0 * (1 / std::sqrt(1 - a * a / (l0 * l0)) - 1);
+  const auto errors = [&](double step) {
+    const SceneRun run("dynamic_mechanical_analysis", {step_of(step)});
+    EXPECT_TRUE(run.outcome().completed()) << run.outcome().sentence;
+    const auto of_last_period = [&](const std::string& path) { return run.value(path) - run.value_at(path, 200.0); };
+    return Eigen::Vector2d(of_last_period("energy/dissipated") - loss, of_last_period("energy/external") - loss);
+  };
+  const Eigen::Vector2d coarse = errors(1.0), fine = errors(0.5);
+  EXPECT_NEAR(coarse[0] / fine[0], 4.0, 0.05);
+  EXPECT_NEAR(coarse[1] / fine[1], 4.0, 0.05);
+  EXPECT_LT(std::abs(extrapolated(coarse[0], fine[0])), 1e-6 * loss);
+  EXPECT_LT(std::abs(extrapolated(coarse[1], fine[1])), 1e-5 * loss);
 }
 
 }  // namespace

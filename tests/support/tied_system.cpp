@@ -65,7 +65,7 @@ variational::State tied_state(const model::Model& model, double dt, const Vector
   VectorXd velocity = v.size() > 0 ? v : VectorXd(VectorXd::Zero(model.n_q()));
   velocity.head(manifold.n_q()).setZero();
   manifold.lift(*frame, w, velocity);
-  for (const auto& part : model.substructures) part->follow(velocity);
+  for (const auto& part : model.substructures) part->follow({}, velocity);
   std::vector<double> u(model.controls.size());
   model.evaluate_controls(0.0, u);
   state.p = velocity;

@@ -160,14 +160,27 @@ def draw(axes, panel):
     add_legend(axes, entries)
 
 
+def has_room(axes, entries, longest):
+    """True if a legend finds a place inside the axes where no curve passes, in parts of their size."""
+    width, height = 0.13 + 0.019 * longest, 0.03 + 0.085 * len(entries)
+    axes.get_xlim(), axes.get_ylim()  # settles both before anything is measured
+    to_axes = axes.transData - axes.transAxes
+    points = [to_axes.transform(line.get_xydata()) for line in axes.get_lines() if line.get_transform() == axes.transData and len(line.get_xydata())]
+    if not points:
+        return True
+    x, y = numpy.concatenate(points).T
+    places = [(a, b) for a in (0.0, 0.5 - 0.5 * width, 1.0 - width) for b in (0.0, 0.5 - 0.5 * height, 1.0 - height)]
+    return any(not numpy.any((x >= a) & (x <= a + width) & (y >= b) & (y <= b + height)) for a, b in places)
+
+
 def add_legend(axes, entries):
-    """Inside where it is short, otherwise below the axes."""
+    """Inside where it is short and finds room, otherwise below the axes."""
     if not entries:
         return
     if len(entries) > MAX_LEGEND:
         entries = [*entries[:MAX_LEGEND], line("none", "-", f"and {len(entries) - MAX_LEGEND} more")]
     longest = max(len(entry.get_label()) for entry in entries)
-    if len(entries) <= 4 and longest <= 22:
+    if len(entries) <= 4 and longest <= 22 and has_room(axes, entries, longest):
         axes.legend(handles=entries, loc="best", borderaxespad=0.2)
     else:
         # Below the numbers and the label of the axis, however high the axes are.

@@ -65,11 +65,23 @@ void ElementSet::volumes(const double* x, const double* dx, const VolumeTargets&
   each_chunk([&](const MaterialLaws&, const ElementRange& range, int) { kernels_.volumes(range, fields, out); });
 }
 
-ElementEnergies ElementSet::energies(ElementFields fields) const {
+void ElementSet::energies_of_chunks(ElementFields fields) const {
   fields.X = X_.data();
   each_chunk([&](const MaterialLaws& laws, const ElementRange& range, int chunk) {
     energies_of_chunk_[static_cast<std::size_t>(chunk)] = kernels_.energies(laws, range, fields);
   });
+}
+
+void ElementSet::energies(ElementFields fields, std::vector<ElementEnergies>& of_materials) const {
+  energies_of_chunks(fields);
+  of_materials.assign(materials_.size(), {});
+  for (std::size_t chunk = 0; chunk < energies_of_chunk_.size(); ++chunk) {
+    of_materials[static_cast<std::size_t>(order_.chunks()[chunk].material)] += energies_of_chunk_[chunk];
+  }
+}
+
+ElementEnergies ElementSet::energies(ElementFields fields) const {
+  energies_of_chunks(fields);
   ElementEnergies sum;
   for (const ElementEnergies& part : energies_of_chunk_) sum += part;
   return sum;

@@ -40,6 +40,8 @@ class ElementSet {
                std::span<const std::int32_t> slots, math::SymmetricBlockMatrix& K) const;
   void volumes(const double* x, const double* dx, const VolumeTargets& out) const;
   ElementEnergies energies(ElementFields fields) const;
+  /// The same, each material for itself.
+  void energies(ElementFields fields, std::vector<ElementEnergies>& of_materials) const;
   /// [cell][8] Gauss points.
   void point_values(ElementFields fields, PointValues* out) const;
   /// Adds int N_a b dV, see ElementKernels::loads.
@@ -48,6 +50,7 @@ class ElementSet {
   std::vector<std::int32_t> slots_in(const math::SymmetricBlockPattern& pattern) const;
 
  private:
+  void energies_of_chunks(ElementFields fields) const;
   template <class Work>
   void each_chunk(const Work& work) const;
 

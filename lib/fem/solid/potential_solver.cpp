@@ -33,23 +33,24 @@ std::vector<std::vector<int>> nodes_of(const std::vector<FloatingElectrode>& ele
 
 }  // namespace
 
-std::unique_ptr<PotentialSolver::Factor> PotentialSolver::make_factor(const ElementSet& elements,
-                                                                      const SolidUnknowns& unknowns,
-                                                                      const SolidDescription& data) {
-  math::SymmetricBlockPattern pattern(elements.n_nodes(), 4, elements.cells());
-  std::vector<std::int32_t> slots = elements.slots_in(pattern);
-  return std::make_unique<Factor>(std::move(pattern), std::move(slots), potential_mask(unknowns.mask()),
-                                  nodes_of(data.floating));
+math::SymmetricBlockPattern PotentialSolver::pattern() const {
+  return {elements_.n_nodes(), 4, elements_.cells(), bonds_.pairs(elements_.cells())};
+}
+
+PotentialSolver::Factor::Factor(const PotentialSolver& of)
+    : pattern(of.pattern()),
+      slots(of.elements_.slots_in(pattern)),
+      fold(of.bonds_, pattern),
+      factor(pattern, potential_mask(of.unknowns_.mask()), nodes_of(of.data_.floating)) {
+  factor.respect(of.bonds_);
 }
 
 PotentialSolver::PotentialSolver(const ElementSet& elements, const SolidUnknowns& unknowns,
-                                 const SolidDescription& data)
-    : elements_(elements),
-      unknowns_(unknowns),
-      data_(data),
-      factor_(unknowns.n_free_potentials() <= direct_potentials || !data.floating.empty()
-                  ? make_factor(elements, unknowns, data)
-                  : nullptr) {
+                                 const SolidDescription& data, const Bonds& bonds)
+    : elements_(elements), unknowns_(unknowns), data_(data), bonds_(bonds) {
+  if (unknowns.n_free_potentials() <= direct_potentials || !data.floating.empty()) {
+    factor_ = std::make_unique<Factor>(*this);
+  }
   for (Eigen::VectorXd* v : {&r_, &z_, &d_, &Ad_, &step_}) *v = Eigen::VectorXd::Zero(elements.n_nodes());
   if (!is_large()) full_ = Eigen::VectorXd::Zero(4 * elements.n_nodes());
   factor_x_ = Eigen::VectorXd::Zero(3 * elements.n_nodes());
@@ -66,6 +67,7 @@ void PotentialSolver::factorise(const Eigen::Ref<const Eigen::VectorXd>& x,
     math::SymmetricBlockMatrix& matrix = factor_->factor.matrix();
     matrix.set_zero();
     elements_.tangent(at, {.stiffness = 0.0, .x_phi = 0.0}, {}, factor_->slots, matrix);
+    factor_->fold.apply(matrix);
     factorised_ = factor_->factor.factorise();
   }
   factor_x_ = x;
@@ -75,9 +77,10 @@ void PotentialSolver::factorise(const Eigen::Ref<const Eigen::VectorXd>& x,
 void PotentialSolver::make_multigrid(const ElementFields& at) {
   multigrid_.reset();
   const math::NodeMask mask = potential_mask(unknowns_.mask());
-  const math::SymmetricBlockPattern pattern(elements_.n_nodes(), 4, elements_.cells());
+  const math::SymmetricBlockPattern pattern = this->pattern();
   math::SymmetricBlockMatrix matrix(pattern);
   elements_.tangent(at, {.stiffness = 0.0, .x_phi = 0.0}, {}, elements_.slots_in(pattern), matrix);
+  BondFold(bonds_, pattern).apply(matrix);
   double sign = 1.0;
   for (std::size_t node = 0; node < mask.size(); ++node) {
     const double diagonal = matrix.values()[16 * static_cast<std::size_t>(pattern.row_start()[node]) + 15];
@@ -102,6 +105,7 @@ void PotentialSolver::restore_memory(const Eigen::Ref<const Eigen::VectorXd>& me
 }
 
 void PotentialSolver::condense(Eigen::VectorXd& rows) const {
+  bonds_.gather(1, rows);
   unknowns_.keep_solved_potentials(rows);
   for (const FloatingElectrode& electrode : data_.floating) {
     double sum = 0.0;
@@ -180,6 +184,7 @@ bool PotentialSolver::solve(const Eigen::Ref<const Eigen::VectorXd>& x, const Ei
     if (!factorised_) return false;
     const int needed = conjugate_gradients(at);
     if (is_large() ? iteration == slow_newton : needed > cg_with_fresh_factor) factorised_ = false;
+    bonds_.follow(1, step_);
     phi += step_;
     const double change = step_.lpNorm<Eigen::Infinity>();
     if (!std::isfinite(change)) return false;

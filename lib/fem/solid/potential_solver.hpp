@@ -18,7 +18,8 @@ namespace muldi::fem {
 class PotentialSolver {
  public:
   /// All must outlive the solver. For solids with free potentials.
-  PotentialSolver(const ElementSet& elements, const SolidUnknowns& unknowns, const SolidDescription& data);
+  PotentialSolver(const ElementSet& elements, const SolidUnknowns& unknowns, const SolidDescription& data,
+                  const Bonds& bonds);
 
   /// Moves the free entries of phi (n_nodes) to equilibrium at x; `surface_charge` (n_nodes) is the charge put on the
   /// nodes. False if it does not converge.
@@ -40,17 +41,17 @@ class PotentialSolver {
   const ElementSet& elements_;
   const SolidUnknowns& unknowns_;
   const SolidDescription& data_;
+  const Bonds& bonds_;
+  /// Of a small mesh.
   struct Factor {
     math::SymmetricBlockPattern pattern;
     std::vector<std::int32_t> slots;
+    BondFold fold;
     SolidFactor factor;
 
-    Factor(math::SymmetricBlockPattern of, std::vector<std::int32_t> at, const math::NodeMask& mask,
-           std::vector<std::vector<int>> electrodes)
-        : pattern(std::move(of)), slots(std::move(at)), factor(pattern, mask, std::move(electrodes)) {}
+    explicit Factor(const PotentialSolver& of);
   };
-  static std::unique_ptr<Factor> make_factor(const ElementSet& elements, const SolidUnknowns& unknowns,
-                                             const SolidDescription& data);
+  math::SymmetricBlockPattern pattern() const;
   /// Of a large mesh: the kept operator, without fixed and floating potentials, times `sign`.
   struct Multigrid {
     math::DoubleCsr matrix;

@@ -21,48 +21,56 @@ constexpr double shift = 1e-10;
 constexpr int n_sweeps = 3;
 
 /// Forces of unit pressures on the free nodes: V_e g_e with the other entries zero, [cell][8][3], scaled to length one.
+/// What acts on bonded nodes acts on those that they are fixed to.
 struct UnitForces {
-  VectorXd values;
-  VectorXd lengths;  // before
+  struct OnNode {
+    int cell = 0;
+    Eigen::Vector3d force = {};
+  };
+  std::vector<std::vector<OnNode>> at_node;  // by cell, ascending
+  VectorXd lengths;                          // before
 };
 
-UnitForces unit_forces(const ElementSet& elements, const SolidUnknowns& unknowns, const VectorXd& volumes) {
-  const Eigen::Index n_cells = elements.n_cells();
-  UnitForces forces{VectorXd::Zero(24 * n_cells), VectorXd::Zero(n_cells)};
-  elements.volumes(elements.reference().data(), nullptr, {.gradient = forces.values.data()});
-  for (Eigen::Index cell = 0; cell < n_cells; ++cell) {
-    auto of_cell = forces.values.segment<24>(24 * cell);
-    of_cell *= volumes[cell];
-    const double whole = of_cell.norm();
+UnitForces unit_forces(const ElementSet& elements, const SolidUnknowns& unknowns, const Bonds& bonds) {
+  const int n_cells = elements.n_cells();
+  UnitForces forces{std::vector<std::vector<UnitForces::OnNode>>(static_cast<std::size_t>(elements.n_nodes())),
+                    VectorXd::Zero(n_cells)};
+  VectorXd gradients = VectorXd::Zero(24L * n_cells);
+  elements.volumes(elements.reference().data(), nullptr, {.gradient = gradients.data()});
+  std::vector<std::pair<int, Eigen::Vector3d>> of_cell;
+  for (int cell = 0; cell < n_cells; ++cell) {
+    of_cell.clear();
+    const double whole = elements.cell_volumes()[cell] * gradients.segment<24>(24L * cell).norm();
     for (int a = 0; a < 8; ++a) {
-      const int node = elements.cells()[static_cast<std::size_t>(cell)][static_cast<std::size_t>(a)];
-      for (int i = 0; i < 3; ++i) {
-        if (!unknowns.is_free(node, i)) of_cell[3 * a + i] = 0.0;
+      const Eigen::Vector3d force = elements.cell_volumes()[cell] * gradients.segment<3>(24L * cell + 3L * a);
+      const auto stays = bonds.terms(elements.cells()[static_cast<std::size_t>(cell)][static_cast<std::size_t>(a)]);
+      for (std::size_t k = 0; k < stays.nodes.size(); ++k) {
+        auto at = std::find_if(of_cell.begin(), of_cell.end(), [&](auto& one) { return one.first == stays.nodes[k]; });
+        if (at == of_cell.end()) at = of_cell.insert(at, {stays.nodes[k], Eigen::Vector3d::Zero()});
+        at->second += stays.of_position[k] * force;
       }
     }
+    double squares = 0.0;
+    for (auto& [node, force] : of_cell) {
+      for (int i = 0; i < 3; ++i) {
+        if (!unknowns.is_free(node, i)) force[i] = 0.0;
+      }
+      squares += force.squaredNorm();
+    }
     // A cell with hardly a free node is not blown up.
-    forces.lengths[cell] = std::max(of_cell.norm(), 1e-2 * whole);
-    of_cell /= forces.lengths[cell];
+    forces.lengths[cell] = std::max(std::sqrt(squares), 1e-2 * whole);
+    for (const auto& [node, force] : of_cell) {
+      forces.at_node[static_cast<std::size_t>(node)].push_back({cell, force / forces.lengths[cell]});
+    }
   }
   return forces;
 }
 
-/// Cells at every node, ascending.
-std::vector<std::vector<int>> cells_of_nodes(const ElementSet& elements) {
-  std::vector<std::vector<int>> of(static_cast<std::size_t>(elements.n_nodes()));
-  for (int cell = 0; cell < elements.n_cells(); ++cell) {
-    for (const int node : elements.cells()[static_cast<std::size_t>(cell)]) {
-      of[static_cast<std::size_t>(node)].push_back(cell);
-    }
-  }
-  return of;
-}
-
-std::vector<std::pair<int, int>> neighbours(const std::vector<std::vector<int>>& at_node) {
+std::vector<std::pair<int, int>> neighbours(const UnitForces& forces) {
   std::vector<std::pair<int, int>> pairs;
-  for (const std::vector<int>& cells : at_node) {
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      for (std::size_t j = i + 1; j < cells.size(); ++j) pairs.emplace_back(cells[i], cells[j]);
+  for (const auto& at_node : forces.at_node) {
+    for (std::size_t i = 0; i < at_node.size(); ++i) {
+      for (std::size_t j = i + 1; j < at_node.size(); ++j) pairs.emplace_back(at_node[i].cell, at_node[j].cell);
     }
   }
   std::sort(pairs.begin(), pairs.end());
@@ -71,19 +79,12 @@ std::vector<std::pair<int, int>> neighbours(const std::vector<std::vector<int>>&
 }
 
 /// Products of the forces of all pairs of cells.
-void fill_products(const ElementSet& elements, const std::vector<std::vector<int>>& at_node, const UnitForces& forces,
-                   math::SymmetricBlockMatrix& G) {
-  const auto corner = [&](int cell, int node) {
-    const auto& nodes = elements.cells()[static_cast<std::size_t>(cell)];
-    return std::find(nodes.begin(), nodes.end(), node) - nodes.begin();
-  };
-  for (std::size_t node = 0; node < at_node.size(); ++node) {
-    for (const int e : at_node[node]) {
-      const auto f_e = forces.values.segment<3>(24L * e + 3 * corner(e, static_cast<int>(node)));
-      for (const int f : at_node[node]) {
-        if (f < e) continue;
-        const auto f_f = forces.values.segment<3>(24L * f + 3 * corner(f, static_cast<int>(node)));
-        G.values()[static_cast<std::size_t>(G.pattern().slot(e, f))] += f_e.dot(f_f);
+void fill_products(const UnitForces& forces, math::SymmetricBlockMatrix& G) {
+  for (const auto& at_node : forces.at_node) {
+    for (const UnitForces::OnNode& e : at_node) {
+      for (const UnitForces::OnNode& f : at_node) {
+        if (f.cell < e.cell) continue;
+        G.values()[static_cast<std::size_t>(G.pattern().slot(e.cell, f.cell))] += e.force.dot(f.force);
       }
     }
   }
@@ -112,14 +113,13 @@ MatrixXd null_vectors(const math::SymmetricBlockMatrix& G, math::SparseLdlt& shi
 
 // Held side faces of a regular box are enough for patterns: across an open face the forces of (-1)^(i+j) f(k) cancel
 // too.
-PressureFilter::PressureFilter(const ElementSet& elements, const SolidUnknowns& unknowns, const VectorXd& volumes)
-    : volumes_(volumes) {
+PressureFilter::PressureFilter(const ElementSet& elements, const SolidUnknowns& unknowns, const Bonds& bonds)
+    : volumes_(elements.cell_volumes()) {
   if (elements.n_cells() > most_cells) return;
-  const UnitForces forces = unit_forces(elements, unknowns, volumes);
-  const std::vector<std::vector<int>> at_node = cells_of_nodes(elements);
-  const math::SymmetricBlockPattern pattern(elements.n_cells(), 1, {}, neighbours(at_node));
+  const UnitForces forces = unit_forces(elements, unknowns, bonds);
+  const math::SymmetricBlockPattern pattern(elements.n_cells(), 1, {}, neighbours(forces));
   math::SymmetricBlockMatrix G(pattern);
-  fill_products(elements, at_node, forces, G);
+  fill_products(forces, G);
   const math::LdltAnalysis analysis(pattern);
   math::SparseLdlt factor(analysis);
   const math::LdltOutcome outcome = factor.factorise(G);

@@ -8,6 +8,7 @@
 /// to zero are kept exactly.
 #include <Eigen/Core>
 
+#include "fem/solid/bonds.hpp"
 #include "fem/solid/element_set.hpp"
 #include "fem/solid/solid_unknowns.hpp"
 
@@ -20,8 +21,8 @@ class PressureFilter {
 
   /// Without any pattern.
   PressureFilter() = default;
-  /// `volumes` (n_cells): V_e; found at the reference configuration.
-  PressureFilter(const ElementSet& elements, const SolidUnknowns& unknowns, const Eigen::VectorXd& volumes);
+  /// Found at the reference configuration.
+  PressureFilter(const ElementSet& elements, const SolidUnknowns& unknowns, const Bonds& bonds);
 
   /// Patterns without force, a constant one included.
   Eigen::Index n_patterns() const { return patterns_.cols(); }

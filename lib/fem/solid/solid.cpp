@@ -20,6 +20,17 @@ std::vector<Material> element_materials(const SolidDescription& data) {
   return materials;
 }
 
+/// With itself as the only member where it has no others.
+SolidDescription with_members(SolidDescription data) {
+  if (data.members.empty()) {
+    data.members = {{.name = data.name,
+                     .n_nodes = static_cast<int>(data.X.size() / 3),
+                     .n_cells = static_cast<int>(data.cells.size()),
+                     .n_materials = static_cast<int>(data.materials.size())}};
+  }
+  return data;
+}
+
 double diagonal(const Eigen::VectorXd& X) {
   const Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic>> nodes(X.data(), 3, X.size() / 3);
   return (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).norm();
@@ -28,10 +39,11 @@ double diagonal(const Eigen::VectorXd& X) {
 }  // namespace
 
 Solid::Solid(SolidDescription data)
-    : data_(std::move(data)),
+    : data_(with_members(std::move(data))),
       elements_(data_.X, data_.cells, data_.material_of_cell, element_materials(data_)),
       unknowns_(data_),
       ties_(data_),
+      bonds_(data_),
       loads_(data_, elements_),
       V_(elements_.cell_volumes()),
       size_(diagonal(data_.X)),
@@ -42,11 +54,11 @@ Solid::Solid(SolidDescription data)
       charge_(Eigen::VectorXd::Zero(elements_.n_nodes())),
       weight_(V_),
       phi_(charge_) {
-  if (is_incompressible()) filter_ = PressureFilter(elements_, unknowns_, V_);
+  if (is_incompressible()) filter_ = PressureFilter(elements_, unknowns_, bonds_);
   q_.size = data_.X.size();
   y_.size = n_potentials() + n_pressures();
   if (unknowns_.n_free_potentials() > 0) {
-    potential_solver_ = std::make_unique<PotentialSolver>(elements_, unknowns_, data_);
+    potential_solver_ = std::make_unique<PotentialSolver>(elements_, unknowns_, data_, bonds_);
   }
 }
 
@@ -81,6 +93,7 @@ const Volumes& Solid::volumes_at(const Eigen::Ref<const Eigen::VectorXd>& x) con
 const Eigen::VectorXd& Solid::potentials_at(const Eigen::Ref<const Eigen::VectorXd>& x,
                                             std::span<const double> u) const {
   unknowns_.place_potentials(u, phi_);
+  bonds_.follow(1, phi_);
   if (potential_solver_) {
     loads_.surface_charge(u, charge_);
     potential_solver_->solve(x, charge_, phi_);
@@ -91,19 +104,25 @@ const Eigen::VectorXd& Solid::potentials_at(const Eigen::Ref<const Eigen::Vector
 Eigen::VectorXd Solid::charge_rows(const Eigen::Ref<const Eigen::VectorXd>& x, const Eigen::VectorXd& phi) const {
   Eigen::VectorXd rows = Eigen::VectorXd::Zero(elements_.n_nodes());
   elements_.forces({.x = x.data(), .phi = phi.data()}, {.charge = rows.data()});
+  bonds_.gather(1, rows);
+  bonds_.account(1, rows);
   return rows;
 }
 
 void Solid::start(Eigen::VectorXd& q, Eigen::VectorXd& y) const {
   positions(q) = data_.X;
   ties_.follow(q_.first, q);
+  bonds_.follow(3, positions(q));
   y.segment(y_.first, y_.size).setZero();
 }
 
 void Solid::place(const model::Placement& at, Eigen::VectorXd& q, Eigen::VectorXd& y) const {
   unknowns_.place_positions(at.u_end, positions(q));
   ties_.follow(q_.first, q);
-  if (unknowns_.has_field()) unknowns_.place_potentials(at.u, potentials(y));
+  bonds_.follow(3, positions(q));
+  if (!unknowns_.has_field()) return;
+  unknowns_.place_potentials(at.u, potentials(y));
+  bonds_.follow(1, potentials(y));
 }
 
 void Solid::settle_stage(const model::IntervalPoint& at, Eigen::VectorXd& y) const {
@@ -130,6 +149,7 @@ model::PartLimits Solid::add_part_forces(const model::IntervalPoint& at, model::
   if (where.phi != nullptr) {
     potential_scale_ = std::max(potential_scale_, potentials(*at.y).lpNorm<Eigen::Infinity>());
     potentials(out.stage) = -charge_;
+    bonds_.gather(1, potentials(out.stage));
     unknowns_.keep_solved_potentials(potentials(out.stage));
   }
   positions(out.force) -= force_;
@@ -214,10 +234,11 @@ double Solid::deformation(const Eigen::VectorXd& q, const Eigen::VectorXd& dq) c
   return force_.lpNorm<Eigen::Infinity>() / size_;
 }
 
-Eigen::Vector3d Solid::centre_of_mass(const Eigen::VectorXd& q) const {
-  const Eigen::VectorXd& mass = loads_.nodal_mass();
+Eigen::Vector3d Solid::centre_of_mass(const Member& member, const Eigen::VectorXd& q) const {
+  const auto mass = loads_.nodal_mass().segment(member.first_node, member.n_nodes);
+  const Eigen::Index first = q_.first + 3 * static_cast<Eigen::Index>(member.first_node);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (Eigen::Index node = 0; node < mass.size(); ++node) sum += mass[node] * q.segment<3>(q_.first + 3 * node);
+  for (Eigen::Index node = 0; node < mass.size(); ++node) sum += mass[node] * q.segment<3>(first + 3 * node);
   return sum / mass.sum();
 }
 
@@ -258,9 +279,15 @@ void Solid::request(model::PatternRequest& pattern) const {
   pattern.add_clique(nodes);
 }
 
-void Solid::follow(Eigen::VectorXd& velocity) const {
+void Solid::follow(std::span<const double> du, Eigen::VectorXd& velocity) const {
   unknowns_.keep_free_positions(positions(velocity));
+  if (!du.empty()) unknowns_.place_position_rates(du, positions(velocity));
   ties_.follow(q_.first, velocity);
+  bonds_.follow(3, positions(velocity));
+}
+
+double Solid::work_of_prescribed(const Eigen::VectorXd& force, const Eigen::VectorXd& motion) const {
+  return unknowns_.work_of_prescribed(positions(force), positions(motion));
 }
 
 void Solid::keep_free(Eigen::VectorXd& rows) const { unknowns_.keep_free_positions(positions(rows)); }

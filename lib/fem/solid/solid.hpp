@@ -11,6 +11,7 @@
 /// and at rest V_e (J_e - 1) and V_e (U'(J_e) - p_e) / U''(J_e).
 #include <memory>
 
+#include "fem/solid/bonds.hpp"
 #include "fem/solid/potential_solver.hpp"
 #include "fem/solid/pressure_filter.hpp"
 #include "fem/solid/solid_loads.hpp"
@@ -30,8 +31,14 @@ class Solid final : public model::Substructure {
   const ElementSet& elements() const { return elements_; }
   const SolidUnknowns& unknowns() const { return unknowns_; }
   const Ties& ties() const { return ties_; }
-  /// Name of the energy part, and of the folder of the results.
-  std::string part() const { return data_.part.empty() ? "solids/" + data_.name : data_.part; }
+  const Bonds& bonds() const { return bonds_; }
+  /// The solids that this one is made of, in the order of their nodes: itself, or several that are fixed to one
+  /// another.
+  const std::vector<Member>& members() const { return data_.members; }
+  /// The member that a cell belongs to.
+  const Member& member_of_cell(int cell) const;
+  /// Name of a member's energy part, and of the folder of its results.
+  std::string part(const Member& member) const { return data_.part.empty() ? "solids/" + member.name : data_.part; }
   bool has_pressures() const { return data_.formulation != Formulation::displacement; }
   bool is_incompressible() const {
     return data_.formulation == Formulation::incompressible || data_.formulation == Formulation::incompressible_direct;
@@ -64,8 +71,8 @@ class Solid final : public model::Substructure {
   double shear_modulus() const { return shear_modulus_; }
   /// Total reference mass.
   double mass() const { return mass_; }
-  /// Centre of mass at a configuration of the whole system (n_q).
-  Eigen::Vector3d centre_of_mass(const Eigen::VectorXd& q) const;
+  /// Centre of mass of a member at a configuration of the whole system (n_q).
+  Eigen::Vector3d centre_of_mass(const Member& member, const Eigen::VectorXd& q) const;
 
   /// Views of the slices in vectors of the whole system.
   Eigen::Ref<const Eigen::VectorXd> positions(const Eigen::VectorXd& q) const { return q.segment(q_.first, q_.size); }
@@ -86,7 +93,8 @@ class Solid final : public model::Substructure {
   const Volumes& volumes_at(const Eigen::Ref<const Eigen::VectorXd>& x) const;
   /// Potentials in equilibrium at a configuration under the controls; those of the last call are kept.
   const Eigen::VectorXd& potentials_at(const Eigen::Ref<const Eigen::VectorXd>& x, std::span<const double> u) const;
-  /// Gradient of the enthalpy by the potentials at a configuration: minus the charges that the supply has put there.
+  /// Gradient of the enthalpy by the potentials at a configuration, gathered and accounted for by members: minus the
+  /// charges that the supply has put there.
   Eigen::VectorXd charge_rows(const Eigen::Ref<const Eigen::VectorXd>& x, const Eigen::VectorXd& phi) const;
   /// Charge that a unit of potential brings onto the conductor of these nodes at a configuration, where all other given
   /// potentials and charges stay as they are: with all of them given potentials, a diagonal entry of Maxwell's matrix.
@@ -107,17 +115,23 @@ class Solid final : public model::Substructure {
   double deformation(const Eigen::VectorXd& q, const Eigen::VectorXd& dq) const override;
   void carry(const Eigen::VectorXd& before, const Eigen::VectorXd& motion, Eigen::VectorXd& q) const override {
     ties_.add_shared(q_.first, before, motion, 1.0, positions(q));
+    bonds_.follow(3, positions(q));
   }
   double natural_length() const override { return size_; }
   void add_load_rate(const model::IntervalPoint& at, std::span<const double> du, Eigen::VectorXd& rows,
                      Eigen::VectorXd& h) const override;
   void keep_free(Eigen::VectorXd& rows) const override;
-  void gather(Eigen::VectorXd& rows) const override { ties_.gather(q_.first, rows); }
-  void follow(Eigen::VectorXd& velocity) const override;
+  void gather(Eigen::VectorXd& rows) const override {
+    bonds_.gather(3, positions(rows));
+    ties_.gather(q_.first, rows);
+  }
+  void follow(std::span<const double> du, Eigen::VectorXd& velocity) const override;
+  double work_of_prescribed(const Eigen::VectorXd& force, const Eigen::VectorXd& motion) const override;
   bool moves() const override { return unknowns_.moves(); }
   void add_multiplier_impulse(const Eigen::VectorXd& q, const Eigen::VectorXd& impulse,
                               Eigen::VectorXd& rows) const override;
   bool add_velocity_rows(const Eigen::VectorXd& q, const Eigen::VectorXd& v, Eigen::VectorXd& h) const override;
+  std::string unresolved(const Eigen::VectorXd& q) const override;
   Eigen::Index n_memory() const override;
   void store_memory(Eigen::Ref<Eigen::VectorXd> out) const override;
   void restore_memory(const Eigen::Ref<const Eigen::VectorXd>& memory) const override;
@@ -128,7 +142,7 @@ class Solid final : public model::Substructure {
   void add_tangent(const model::IntervalPoint&, const model::TangentWeights&, math::BlockMatrix&) const override {}
   void add_control_force(const model::IntervalPoint& at, int control, Eigen::VectorXd& out) const override;
   model::IntervalWork work(const model::IntervalPoint& at) const override;
-  std::vector<std::string> parts() const override { return {part()}; }
+  std::vector<std::string> parts() const override;
   void energies(const model::NodePoint& at, std::span<model::Energy> out) const override;
   std::string inadmissible(const Eigen::VectorXd& q) const override;
   /// Steps check the Gauss points in their middle; this looks at the nodes in time.
@@ -142,6 +156,7 @@ class Solid final : public model::Substructure {
   ElementSet elements_;
   SolidUnknowns unknowns_;
   Ties ties_;
+  Bonds bonds_;
   SolidLoads loads_;
   const Eigen::VectorXd& V_;  // of elements_
   double size_ = 0.0;
@@ -157,7 +172,8 @@ class Solid final : public model::Substructure {
   mutable Volumes volumes_[2];
   mutable int last_volumes_ = 0;
   mutable Eigen::VectorXd phi_;
-  mutable double potential_scale_ = 0.0;  // the largest potential so far
+  mutable std::vector<ElementEnergies> energies_;  // of the materials
+  mutable double potential_scale_ = 0.0;           // the largest potential so far
 };
 
 }  // namespace muldi::fem

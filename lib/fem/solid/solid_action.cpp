@@ -62,13 +62,18 @@ void SolidAction::apply(const SolidVector& d, SolidVector& out) {
   } else {
     out.x = momentum_ - 0.5 * dt_ * force_;
   }
-  if (!solid_.has_pressures()) return;
+  if (solid_.n_potentials() > 0) solid_.bonds().collect(1, out.phi);
+  if (!solid_.has_pressures()) {
+    solid_.bonds().collect(3, out.x);
+    return;
+  }
   const Eigen::VectorXd& V = solid_.cell_volumes();
   if (step) {
     weight_ = coupling_ * V.cwiseProduct(d.p);
     begin_.add_gradients(elements, weight_, out.x);
   }
   end_.project(elements, d.x, out.p);
+  solid_.bonds().collect(3, out.x);
   out.p = coupling_ * V.cwiseProduct(out.p);
   solid_.filter().keep_rows(out.p);
   if (!solid_.is_incompressible()) out.p -= compliance_.cwiseProduct(d.p);

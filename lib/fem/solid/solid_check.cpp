@@ -42,6 +42,7 @@ class SolidCheck {
            .phi = VectorXd::Zero(solid.n_potentials()),
            .p = VectorXd::Zero(solid.n_pressures())};
     if (solid.n_potentials() > 0) set_potentials();
+    keep_bonds(at_);
     settle_pressures(0.0);
     solid.positions(q_) = at_.x;
   }
@@ -132,17 +133,27 @@ class SolidCheck {
     return rows;
   }
 
+  void keep_bonds(Unknowns& at) const {
+    solid_.bonds().follow(3, at.x);
+    solid_.bonds().follow(3, at.v);
+    if (at.phi.size() > 0) solid_.bonds().follow(1, at.phi);
+  }
+
   Unknowns direction(bool x, bool v, bool phi, bool p) {
     const Eigen::Index n = at_.x.size();
-    return {
+    Unknowns d{
         .x = x ? VectorXd(step_ * numbers_.vector(n)) : VectorXd::Zero(n),
         .v = v ? VectorXd(step_ / dt_ * numbers_.vector(n)) : VectorXd::Zero(n),
         .phi = phi ? VectorXd(0.1 * volt_ * numbers_.vector(at_.phi.size())) : VectorXd::Zero(at_.phi.size()),
         .p = p ? VectorXd(0.1 * solid_.shear_modulus() * numbers_.vector(at_.p.size())) : VectorXd::Zero(at_.p.size())};
+    keep_bonds(d);
+    return d;
   }
 
   void add(const std::string& what, const std::function<VectorXd(double)>& f, const VectorXd& given) const {
-    sink_(solid_.part() + ": " + what, f, given);
+    std::string where;
+    for (const Member& member : solid_.members()) where += (where.empty() ? "" : ", ") + solid_.part(member);
+    sink_(where + ": " + what, f, given);
   }
 
   /// Elastic energy, electric enthalpy, and p V J of pressures that are held.
@@ -194,7 +205,9 @@ class SolidCheck {
   void check_matrix() {
     const Eigen::Index n_nodes = elements_.n_nodes();
     const int block = at_.phi.size() > 0 ? 4 : 3;
-    const math::SymmetricBlockPattern pattern(elements_.n_nodes(), block, elements_.cells());
+    const Bonds& bonds = solid_.bonds();
+    const math::SymmetricBlockPattern pattern(elements_.n_nodes(), block, elements_.cells(),
+                                              bonds.pairs(elements_.cells()));
     const std::vector<std::int32_t> slots = elements_.slots_in(pattern);
     math::SymmetricBlockMatrix K(pattern);
     Unknowns still = at_;
@@ -204,6 +217,7 @@ class SolidCheck {
     ElementTangentWeights weights;
     if (at_.p.size() > 0) weights.curvature = at_.p.data();
     elements_.tangent(where, weights, {}, slots, K);
+    BondFold(bonds, pattern).apply(K);
     const Unknowns d = direction(true, false, true, false);
     VectorXd packed(block * n_nodes);
     VectorXd product(block * n_nodes);
@@ -225,8 +239,10 @@ class SolidCheck {
       add(
           charge ? "matrix, rows of potentials" : "matrix, rows of positions",
           [&](double s) -> VectorXd {
-            const VectorXd rows = forces(still.moved(s, d));
-            return charge ? VectorXd(rows.tail(n_nodes)) : VectorXd(rows.head(3 * n_nodes));
+            const VectorXd all = forces(still.moved(s, d));
+            VectorXd rows = charge ? VectorXd(all.tail(n_nodes)) : VectorXd(all.head(3 * n_nodes));
+            bonds.collect(charge ? 1 : 3, rows);
+            return rows;
           },
           given);
     }
@@ -252,7 +268,8 @@ class SolidCheck {
     const model::IntervalPoint point{.q0 = q0, .q1 = q1, .q = q, .v = v, .u = u, .dt = dt, .y = &y};
     solid_.add_forces(point, out);
     if (action_ != nullptr) action_->linearise(point);
-    const VectorXd balance = dt > 0.0 ? VectorXd(0.5 * dt * out.force - out.momentum + out.begin) : VectorXd(out.force);
+    VectorXd balance = dt > 0.0 ? VectorXd(0.5 * dt * out.force - out.momentum + out.begin) : VectorXd(out.force);
+    solid_.bonds().collect(3, solid_.positions(balance));
     VectorXd all(at_.x.size() + at_.phi.size() + at_.p.size());
     all << solid_.positions(balance), VectorXd(out.stage.segment(solid_.y_slice().first, solid_.y_slice().size));
     return all;
@@ -306,6 +323,7 @@ class SolidCheck {
       VectorXd stage = VectorXd::Zero(y.size());
       const VectorXd zero = force;
       solid_.add_load_rate({.q0 = q, .q1 = q, .q = q, .v = zero, .u = u, .y = &y}, du, force, stage);
+      solid_.bonds().collect(3, solid_.positions(force));
       VectorXd given(at_.x.size() + at_.phi.size() + at_.p.size());
       given << solid_.positions(force), VectorXd(stage.segment(solid_.y_slice().first, solid_.y_slice().size));
       const auto f = [&](double s) -> VectorXd {

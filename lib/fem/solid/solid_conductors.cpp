@@ -17,7 +17,7 @@ struct Unnamed {
 };
 
 /// Those of potential zero are left out: no work is done on their charges.
-std::vector<Unnamed> unnamed_conductors(const SolidDescription& data) {
+std::vector<Unnamed> unnamed_conductors(const SolidDescription& data, const Member& member) {
   std::vector<char> named(static_cast<std::size_t>(data.X.size() / 3), 0);
   for (const Electrode& electrode : data.electrodes) {
     for (const int node : electrode.nodes) named[static_cast<std::size_t>(node)] = 1;
@@ -25,7 +25,8 @@ std::vector<Unnamed> unnamed_conductors(const SolidDescription& data) {
   std::vector<Unnamed> found;
   for (const PrescribedPotential& said : data.potentials) {
     char& is_taken = named[static_cast<std::size_t>(said.node)];
-    if (is_taken != 0 || said.value.is_zero()) continue;
+    const bool is_own = said.node >= member.first_node && said.node < member.first_node + member.n_nodes;
+    if (!is_own || is_taken != 0 || said.value.is_zero()) continue;
     is_taken = 1;
     auto one = std::find_if(found.begin(), found.end(), [&](const Unnamed& at) { return same(at.value, said.value); });
     if (one == found.end()) one = found.insert(found.end(), {said.value, {}});
@@ -53,8 +54,13 @@ model::Terminal SolidRecords::terminal_of(const SurfaceCharge& charge) const {
   // What is put on a node of given potential is counted there.
   WeightedNodes where;
   for (std::size_t k = 0; k < charge.nodes.size(); ++k) {
-    const bool given = std::any_of(solid_.data().potentials.begin(), solid_.data().potentials.end(),
-                                   [&](const PrescribedPotential& said) { return said.node == charge.nodes[k]; });
+    const Bonds::Terms stays = solid_.bonds().terms(charge.nodes[k]);
+    bool given = true;
+    for (std::size_t i = 0; i < stays.nodes.size(); ++i) {
+      if (stays.of_potential[i] == 0.0) continue;
+      given &= std::any_of(solid_.data().potentials.begin(), solid_.data().potentials.end(),
+                           [&](const PrescribedPotential& said) { return said.node == stays.nodes[i]; });
+    }
     if (given) continue;
     where.nodes.push_back(charge.nodes[k]);
     where.weights.push_back(charge.unit[k]);
@@ -67,7 +73,8 @@ model::Terminal SolidRecords::terminal_of(const SurfaceCharge& charge) const {
 void SolidRecords::add_electric(const model::ElectricRecord& wanted, model::Model& model) const {
   const SolidDescription& data = solid_.data();
   const auto add = [&](const auto& electrode, bool floats, model::Terminal terminal) {
-    const std::string folder = "electrodes/" + data.name + "." + electrode.name;
+    if (!owns(electrode)) return;
+    const std::string folder = "electrodes/" + member().name + "." + electrode.name;
     if (wanted.capacitance) {
       model.observables.push_back(
           {.path = folder + "/capacitance",
@@ -82,10 +89,11 @@ void SolidRecords::add_electric(const model::ElectricRecord& wanted, model::Mode
   };
   for (const Electrode& electrode : data.electrodes) add(electrode, false, terminal_of(electrode.nodes));
   for (const FloatingElectrode& electrode : data.floating) add(electrode, true, terminal_of(electrode));
-  for (const Unnamed& conductor : unnamed_conductors(data)) {
+  for (const Unnamed& conductor : unnamed_conductors(data, member())) {
     model::add_terminal("", terminal_of(conductor.nodes), wanted, model);
   }
   for (const SurfaceCharge& charge : data.surface_charges) {
+    if (!owns(charge)) continue;
     model::add_terminal("", terminal_of(charge), wanted, model);
   }
 }

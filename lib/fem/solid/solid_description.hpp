@@ -2,6 +2,7 @@
 /// A solid as plain data: mesh, materials, what is prescribed, loads. Made from the scene; read by Solid.
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -49,14 +50,16 @@ struct PrescribedPotential {
 /// An equipotential with a given total charge and unknown potential.
 struct FloatingElectrode {
   std::string name = {};
-  std::vector<int> nodes = {};
+  std::vector<int> nodes = {};  ///< none of them bonded
   Value charge = {};
+  int member = 0;
 };
 
 /// Nodes whose charge is reported under a name: an electrode with a prescribed potential.
 struct Electrode {
   std::string name = {};
   std::vector<int> nodes = {};
+  int member = 0;
 };
 
 /// Forces on nodes that grow with one number: tractions, body forces.
@@ -77,6 +80,7 @@ struct SurfaceCharge {
   std::vector<int> nodes = {};
   std::vector<double> unit = {};
   Value value = {};
+  int member = 0;
 };
 
 /// A rigid body that nodes are tied to.
@@ -93,6 +97,25 @@ struct Tie {
   Eigen::Vector3d xi = Eigen::Vector3d::Zero();  ///< body coordinates of the node
 };
 
+/// A node that is fixed to others of the same description: x = sum of weights x_to.
+struct Bond {
+  int node = 0;
+  std::vector<int> to = {};          ///< none of them bonded
+  std::vector<double> weights = {};  ///< their sum is 1
+  bool potential = true;             ///< of the potential too
+};
+
+/// One of the solids in a description: a range of its nodes, of its cells, of its materials.
+struct Member {
+  std::string name = {};
+  int first_node = 0;
+  int n_nodes = 0;
+  int first_cell = 0;
+  int n_cells = 0;
+  int first_material = 0;
+  int n_materials = 0;
+};
+
 struct SolidDescription {
   std::string name = {};
   std::string part = {};   ///< energy part and folder, e.g. "muscles/upper"; empty: "solids/<name>"
@@ -106,7 +129,13 @@ struct SolidDescription {
   std::vector<PrescribedDisplacement> displacements = {};
   std::vector<Host> hosts = {};  ///< ground is none: nodes that it holds have prescribed displacements
   std::vector<Tie> ties = {};    ///< one a node, of nodes without prescribed displacements
-  bool tied_to_ground = false;   ///< prescribed displacements are ties to ground, which does not turn
+  std::vector<Bond> bonds = {};  ///< one a node, of nodes without prescribed displacements and ties
+  /// Solids that are fixed to one another, in the order of their nodes; empty: one alone.
+  std::vector<Member> members = {};
+  /// By node, where there are bonds: bits of what its own member's conditions give, 0 to 2 by displacements and ties to
+  /// bodies or to ground, 3 by a named electrode.
+  std::vector<std::uint8_t> given = {};
+  bool tied_to_ground = false;  ///< prescribed displacements are ties to ground, which does not turn
   std::vector<PrescribedPotential> potentials = {};  ///< none: the solid has no field
   std::vector<FloatingElectrode> floating = {};
   std::vector<Electrode> electrodes = {};

@@ -1,12 +1,17 @@
 /// Energies and work of a solid, and what makes a configuration inadmissible.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "base/text.hpp"
+#include "fem/solid/least_stretch.hpp"
 #include "fem/solid/solid.hpp"
 
 namespace muldi::fem {
 namespace {
+
+/// Of the volume of a cell: where a Gauss point has less, curves of equilibria of several meshes part.
+constexpr double least_share_of_volume = 0.1;
 
 /// The number of a cell as its user knows it.
 std::string cell_label(const SolidDescription& data, int cell) {
@@ -22,6 +27,19 @@ std::string Solid::place_of_cell(int cell) const {
     middle += data_.X.segment<3>(3 * static_cast<Eigen::Index>(node)) / 8.0;
   }
   return base::format("cell {} at [{:.4g}, {:.4g}, {:.4g}]", cell_label(data_, cell), middle[0], middle[1], middle[2]);
+}
+
+const Member& Solid::member_of_cell(int cell) const {
+  const auto found = std::find_if(data_.members.begin(), data_.members.end(),
+                                  [cell](const Member& member) { return cell < member.first_cell + member.n_cells; });
+  return *found;
+}
+
+std::vector<std::string> Solid::parts() const {
+  std::vector<std::string> names;
+  names.reserve(data_.members.size());
+  for (const Member& member : data_.members) names.push_back(part(member));
+  return names;
 }
 
 bool Solid::is_viscous() const {
@@ -64,18 +82,28 @@ void Solid::energies(const model::NodePoint& at, std::span<model::Energy> out) c
   const auto x = positions(at.q);
   ElementFields fields{.x = x.data(), .v = at.v.data() + q_.first};
   if (unknowns_.has_field()) fields.phi = potentials_at(x, at.u).data();
-  const ElementEnergies sum = elements_.energies(fields);
-  out[0].kinetic += sum.kinetic;
-  out[0].elastic += sum.elastic;
-  out[0].electric += sum.electric;
-  out[0].gravity += loads_.gravity_energy(x);
-  // Charges that are given instead of potentials belong to the enthalpy: its stationary value by phi is the energy.
+  elements_.energies(fields, energies_);
   loads_.surface_charge(at.u, charge_);
-  if (unknowns_.has_field()) out[0].electric += charge_.dot(phi_);
-  if (data_.formulation != Formulation::mean_dilatation) return;
-  const Volumes& volumes = volumes_at(x);
-  for (int cell = 0; cell < elements_.n_cells(); ++cell) {
-    out[0].elastic += V_[cell] * dilation(cell, volumes.J[cell]).U;
+  const bool dilates = data_.formulation == Formulation::mean_dilatation;
+  for (std::size_t k = 0; k < data_.members.size(); ++k) {
+    const Member& member = data_.members[k];
+    for (int material = 0; material < member.n_materials; ++material) {
+      const ElementEnergies& sum = energies_[static_cast<std::size_t>(member.first_material + material)];
+      out[k].kinetic += sum.kinetic;
+      out[k].elastic += sum.elastic;
+      out[k].electric += sum.electric;
+    }
+    out[k].gravity += loads_.gravity_energy(x, member.first_node, member.n_nodes);
+    // Charges that are given instead of potentials belong to the enthalpy: its stationary value by phi is the energy.
+    if (unknowns_.has_field()) {
+      out[k].electric +=
+          charge_.segment(member.first_node, member.n_nodes).dot(phi_.segment(member.first_node, member.n_nodes));
+    }
+    if (!dilates) continue;
+    const Volumes& volumes = volumes_at(x);
+    for (int cell = member.first_cell; cell < member.first_cell + member.n_cells; ++cell) {
+      out[k].elastic += V_[cell] * dilation(cell, volumes.J[cell]).U;
+    }
   }
 }
 
@@ -87,7 +115,12 @@ double Solid::capacitance(const Eigen::Ref<const Eigen::VectorXd>& x, const std:
   if (floats) {
     charge[nodes.front()] = 1.0;
   } else {
-    for (const int node : nodes) phi[node] = 1.0;
+    for (const int node : nodes) {
+      phi[node] = 1.0;
+      const Bonds::Terms stays = bonds_.terms(node);
+      if (stays.nodes.size() == 1) phi[stays.nodes.front()] = 1.0;
+    }
+    bonds_.follow(1, phi);
   }
   if (potential_solver_ && !potential_solver_->solve(x, charge, phi)) return std::numeric_limits<double>::quiet_NaN();
   if (floats) return 1.0 / phi[nodes.front()];
@@ -102,11 +135,32 @@ std::string Solid::inadmissible(const Eigen::VectorXd& q) const {
   const double margin = elements_.forces({.x = q.data() + q_.first}, {.least_J = least.data()});
   if (margin > 0.0) return {};
   Eigen::Index worst = 0;
-  for (Eigen::Index cell = 0; cell < least.size(); ++cell) {
-    if (!(least[cell] >= least[worst])) worst = cell;
+  for (Eigen::Index cell = 1; cell < least.size() && !std::isnan(least[worst]); ++cell) {
+    // Round-off does not choose between equal cells.
+    constexpr double clearly = 1e-6;
+    if (!(least[cell] >= least[worst] - clearly * std::max(1.0, std::abs(least[worst])))) worst = cell;
   }
-  return base::format("solid '{}': {} is inverted (det F {:.3g})", data_.name, place_of_cell(static_cast<int>(worst)),
-                      least[worst]);
+  return base::format("solid '{}': {} is inverted (det F {:.3g})", member_of_cell(static_cast<int>(worst)).name,
+                      place_of_cell(static_cast<int>(worst)), least[worst]);
+}
+
+std::string Solid::unresolved(const Eigen::VectorXd& q) const {
+  // Only volumes that are looked at as a whole let a part of a cell vanish.
+  if (!has_pressures()) return {};
+  Eigen::VectorXd least(elements_.n_cells());
+  elements_.forces({.x = q.data() + q_.first}, {.least_J = least.data()});
+  const Volumes volumes = volumes_at(positions(q));
+  least.array() /= volumes.J.array();
+  int worst = 0;
+  for (int cell = 1; cell < elements_.n_cells(); ++cell) {
+    // Round-off does not choose between equal cells.
+    if (least[cell] < (1.0 - 1e-6) * least[worst]) worst = cell;
+  }
+  if (least[worst] > least_share_of_volume) return {};
+  return base::format(
+      "{} of solid '{}' gives way alone: it keeps its volume as a whole, but of the part at one of its Gauss points "
+      "{:.3g} is left, squeezed to stretch {:.3g}; what follows depends on the mesh",
+      place_of_cell(worst), data_.name, least[worst], least_stretches(elements_, positions(q))[worst]);
 }
 
 }  // namespace muldi::fem

@@ -12,7 +12,7 @@ SolidIteration::SolidIteration(const math::SymmetricBlockPattern& pattern, const
                                std::vector<std::vector<int>> electrodes, Options options)
     : SolidLinear(pattern, mask, std::move(electrodes)),
       options_(options),
-      preconditioner_(pattern, options.degree),
+      preconditioner_(pattern, options.degrees),
       gmres_(gmres_restart) {}
 
 std::string SolidIteration::name_of(const Options& options) {

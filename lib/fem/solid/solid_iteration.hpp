@@ -20,8 +20,8 @@ class SolidIteration final : public SolidLinear {
  public:
   struct Options {
     KrylovMethod method = KrylovMethod::cg;
-    double accuracy = 1e-3;     ///< relative, of the residual
-    int degree = 3;             ///< of the polynomial
+    double accuracy = 1e-3;  ///< relative, of the residual
+    math::BlockChebyshev::Degrees degrees = {};
     int expected_negative = 0;  ///< what n_negative() says of a matrix that shows no sign of another count
   };
   SolidIteration(const math::SymmetricBlockPattern& pattern, const math::NodeMask& mask,

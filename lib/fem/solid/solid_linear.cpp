@@ -111,6 +111,7 @@ void SolidLinear::add_border(Eigen::MatrixXd& common, Eigen::Ref<Eigen::MatrixXd
 }
 
 void SolidLinear::solve(Eigen::VectorXd& x) {
+  if (bonds_ != nullptr) bonds_->collect(matrix_.block_size(), x);
   if (scale_ != 1.0) scale_potentials(scale_, x);
   common_.resize(static_cast<Eigen::Index>(electrodes_.size()), 1);
   for (std::size_t e = 0; e < electrodes_.size(); ++e) {
@@ -121,9 +122,11 @@ void SolidLinear::solve(Eigen::VectorXd& x) {
   for (const Eigen::Index i : masked_) x[i] = 0.0;
   if (!electrodes_.empty()) add_border(common_, x);
   if (scale_ != 1.0) scale_potentials(scale_, x);
+  if (bonds_ != nullptr) bonds_->follow(matrix_.block_size(), x);
 }
 
 void SolidLinear::solve_columns(Eigen::MatrixXd& x) {
+  for (Eigen::Index j = 0; j < x.cols() && bonds_ != nullptr; ++j) bonds_->collect(matrix_.block_size(), x.col(j));
   if (scale_ != 1.0) scale_potentials(scale_, x);
   common_.resize(static_cast<Eigen::Index>(electrodes_.size()), x.cols());
   for (std::size_t e = 0; e < electrodes_.size(); ++e) {
@@ -136,6 +139,7 @@ void SolidLinear::solve_columns(Eigen::MatrixXd& x) {
   for (const Eigen::Index i : masked_) x.row(i).setZero();
   if (!electrodes_.empty()) add_border(common_, x);
   if (scale_ != 1.0) scale_potentials(scale_, x);
+  for (Eigen::Index j = 0; j < x.cols() && bonds_ != nullptr; ++j) bonds_->follow(matrix_.block_size(), x.col(j));
 }
 
 void SolidLinear::solve_free_columns(Eigen::MatrixXd& x) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "fem/solid/bonds.hpp"
 #include "math/sparse_block_matrix.hpp"
 
 namespace muldi::fem {
@@ -25,6 +26,10 @@ class SolidLinear {
   virtual ~SolidLinear() = default;
   SolidLinear(const SolidLinear&) = delete;
   SolidLinear& operator=(const SolidLinear&) = delete;
+
+  /// Right sides are gathered from bonded nodes, and solutions followed by them; the matrix is to be folded before it
+  /// is factorised. `bonds` must outlive the object.
+  void respect(const Bonds& bonds) { bonds_ = bonds.empty() ? nullptr : &bonds; }
 
   /// To be filled before `factorise`, which may change it.
   math::SymmetricBlockMatrix& matrix() { return matrix_; }
@@ -63,6 +68,7 @@ class SolidLinear {
   void add_border(Eigen::MatrixXd& common, Eigen::Ref<Eigen::MatrixXd> x);
   double sum_over(const std::vector<int>& nodes, const Eigen::VectorXd& x) const;
 
+  const Bonds* bonds_ = nullptr;
   std::vector<std::vector<int>> electrodes_;
   std::vector<Eigen::Index> masked_;  // unknowns
   double scale_ = 1.0;                // of the potentials

@@ -9,7 +9,9 @@ void Solid::add_load_rate(const model::IntervalPoint& at, std::span<const double
   Eigen::VectorXd dx = Eigen::VectorXd::Zero(q_.size);
   Eigen::VectorXd dphi = Eigen::VectorXd::Zero(elements_.n_nodes());
   unknowns_.place_position_rates(du, dx);
+  bonds_.follow(3, dx);
   if (unknowns_.has_field()) unknowns_.place_potential_rates(du, dphi);
+  bonds_.follow(1, dphi);
   ElementFields where = fields(at);
   where.v = nullptr;
   if (has_pressures()) where.pressure = at.y->data() + y_.first + n_potentials();
@@ -26,6 +28,7 @@ void Solid::add_load_rate(const model::IntervalPoint& at, std::span<const double
     positions(rows) += du[control] * force;
   }
   if (where.phi != nullptr) {
+    bonds_.gather(1, charge);
     unknowns_.keep_solved_potentials(charge);
     potentials(h) -= charge;
   }

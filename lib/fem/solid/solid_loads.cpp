@@ -167,10 +167,10 @@ void SolidLoads::surface_charge_rate(std::span<const double> du, Eigen::VectorXd
     charge[electrode.nodes.front()] += electrode.charge.rate(du);
 }
 
-double SolidLoads::gravity_energy(const Eigen::Ref<const Eigen::VectorXd>& x) const {
+double SolidLoads::gravity_energy(const Eigen::Ref<const Eigen::VectorXd>& x, int first, int n_nodes) const {
   if (!has_gravity_) return 0.0;
   double sum = 0.0;
-  for (Eigen::Index node = 0; node < nodal_mass_.size(); ++node) {
+  for (Eigen::Index node = first; node < first + n_nodes; ++node) {
     sum -= nodal_mass_[node] * data_->gravity.dot(x.segment<3>(3 * node));
   }
   return sum;

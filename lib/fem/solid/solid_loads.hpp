@@ -35,7 +35,7 @@ class SolidLoads {
   /// The derivative of surface_charge when the controls move along `du`.
   void surface_charge_rate(std::span<const double> du, Eigen::VectorXd& charge) const;
   /// -m g.x.
-  double gravity_energy(const Eigen::Ref<const Eigen::VectorXd>& x) const;
+  double gravity_energy(const Eigen::Ref<const Eigen::VectorXd>& x, int first, int n_nodes) const;
   /// Mass of each node (n_nodes), and their sum.
   const Eigen::VectorXd& nodal_mass() const { return nodal_mass_; }
 

@@ -59,7 +59,18 @@ void copy(const Eigen::Ref<const Eigen::VectorXd>& from, std::span<double> out) 
 
 }  // namespace
 
-SolidRecords::SolidRecords(const Solid& solid) : solid_(solid) {}
+SolidRecords::SolidRecords(const Solid& solid, std::size_t member) : solid_(solid), member_(member) {}
+
+std::vector<int> SolidRecords::nodes(std::vector<int> of_member) const {
+  for (int& node : of_member) node += member().first_node;
+  return of_member;
+}
+
+bool SolidRecords::is_held(int node, int component) const {
+  const std::vector<std::uint8_t>& given = solid_.data().given;
+  if (given.empty()) return !solid_.unknowns().is_free(node, component);
+  return (given[static_cast<std::size_t>(node)] >> component & 1) != 0;
+}
 
 const Eigen::VectorXd& SolidRecords::potentials(const model::NodeView& at) const {
   if (potentials_.is_old(at)) potentials_.value = solid_.potentials_at(solid_.positions(at.q), at.u);
@@ -72,6 +83,8 @@ double SolidRecords::charge(const std::vector<int>& nodes, const model::NodeView
     charges_.value.setZero(phi.size());
     solid_.elements().forces({.x = solid_.positions(at.q).data(), .phi = phi.data()},
                              {.charge = charges_.value.data()});
+    solid_.bonds().gather(1, charges_.value);
+    solid_.bonds().account(1, charges_.value);
   }
   // The gradient of the enthalpy by the potentials is minus the charge.
   double sum = 0.0;
@@ -80,11 +93,14 @@ double SolidRecords::charge(const std::vector<int>& nodes, const model::NodeView
 }
 
 Eigen::Vector3d SolidRecords::reaction(const std::vector<int>& nodes, const model::NodeView& at) const {
-  const auto force = solid_.positions(at.constraint_force);
+  if (reactions_.is_old(at)) {
+    reactions_.value = solid_.positions(at.constraint_force);
+    solid_.bonds().account(3, reactions_.value);
+  }
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const int node : nodes) {
     for (int i = 0; i < 3; ++i) {
-      if (!solid_.unknowns().is_free(node, i)) sum[i] += force[3 * static_cast<Eigen::Index>(node) + i];
+      if (is_held(node, i)) sum[i] += reactions_.value[3 * static_cast<Eigen::Index>(node) + i];
     }
   }
   return sum;
@@ -167,29 +183,37 @@ const SolidRecords::CellMeans& SolidRecords::cell_means(const model::NodeView& a
 }
 
 void SolidRecords::write(FieldQuantity quantity, const model::NodeView& at, std::span<double> out) const {
+  const auto of_nodes = [&](const Eigen::Ref<const Eigen::VectorXd>& all, int width) {
+    copy(all.segment(width * static_cast<Eigen::Index>(member().first_node),
+                     width * static_cast<Eigen::Index>(member().n_nodes)),
+         out);
+  };
+  const auto of_cells = [&](const Eigen::Ref<const Eigen::MatrixXd>& all) {
+    copy(Eigen::VectorXd(all.middleCols(member().first_cell, member().n_cells).reshaped()), out);
+  };
   switch (quantity) {
     case FieldQuantity::position:
-      return copy(solid_.positions(at.q), out);
+      return of_nodes(solid_.positions(at.q), 3);
     case FieldQuantity::velocity:
-      return copy(solid_.positions(at.v), out);
+      return of_nodes(solid_.positions(at.v), 3);
     case FieldQuantity::potential:
-      return copy(potentials(at), out);
+      return of_nodes(potentials(at), 1);
     case FieldQuantity::pressure:
-      return copy(-tensions(at), out);
+      return of_cells(-tensions(at).transpose());
     case FieldQuantity::stress:
-      return copy(cell_means(at).stress.reshaped(), out);
+      return of_cells(cell_means(at).stress);
     case FieldQuantity::field:
-      return copy(cell_means(at).field.reshaped(), out);
+      return of_cells(cell_means(at).field);
     case FieldQuantity::true_field:
-      return copy(cell_means(at).true_field.reshaped(), out);
+      return of_cells(cell_means(at).true_field);
     case FieldQuantity::jacobian:
-      return copy(solid_.volumes_at(solid_.positions(at.q)).J, out);
+      return of_cells(solid_.volumes_at(solid_.positions(at.q)).J.transpose());
   }
 }
 
 model::FieldHistory::Field SolidRecords::field(FieldQuantity quantity, const std::string& folder) const {
   const FieldText text = text_of(quantity);
-  const int n = text.at_nodes ? solid_.elements().n_nodes() : solid_.elements().n_cells();
+  const int n = text.at_nodes ? member().n_nodes : member().n_cells;
   std::vector<std::size_t> shape{static_cast<std::size_t>(n)};
   shape.insert(shape.end(), text.width.begin(), text.width.end());
   return {.observable = {.path = folder + "/" + text.name,
@@ -203,7 +227,7 @@ model::FieldHistory::Field SolidRecords::field(FieldQuantity quantity, const std
 }
 
 model::Observable SolidRecords::electrode(const std::string& name, const std::vector<int>& nodes, bool charged) const {
-  const std::string path = "electrodes/" + solid_.data().name + "." + name;
+  const std::string path = "electrodes/" + member().name + "." + name;
   if (charged) {
     return {
         .path = path + "/charge",
@@ -225,6 +249,7 @@ std::vector<model::Observable> SolidRecords::electrodes() const {
   std::vector<model::Observable> all;
   const auto add = [&](const auto& list) {
     for (const auto& one : list) {
+      if (!owns(one)) continue;
       all.push_back(electrode(one.name, one.nodes, true));
       all.push_back(electrode(one.name, one.nodes, false));
     }

@@ -12,6 +12,7 @@ constexpr double refined_column = 1e-9;
 void SolidSolver::make_responses() {
   Eigen::MatrixXd& W = responses_.displacements();
   responses_.impose();
+  for (Eigen::Index j = 0; j < W.cols(); ++j) solid_.bonds().follow(pattern_.block_size(), W.col(j));
   imposed_ = W;
   for (Eigen::Index j = 0; j < W.cols(); ++j) linear_->matrix().multiply(imposed_.col(j), W.col(j));
   linear_->solve_columns(W);

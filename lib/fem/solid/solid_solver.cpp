@@ -10,6 +10,9 @@ namespace {
 
 /// Stiffness of the volume in the factors of the incompressible formulations, over what resists the smoothest motion.
 constexpr double augmentation = 3e2;
+/// The same at rest, where volumes are kept exactly by every factor: an iteration less a digit of it, and the exact
+/// residuals return the digits that the factor loses.
+constexpr double augmentation_at_rest = 1e4;
 /// The same where patterns of pressures are filtered out, against which it works in vain.
 constexpr double filtered_augmentation = 30.0;
 constexpr double pi = 3.14159265358979323846;
@@ -52,17 +55,29 @@ SolverTask task_of(const Solid& solid, model::Linearisation kind) {
           .tied = !solid.ties().empty()};
 }
 
+math::SymmetricBlockPattern pattern_of(const Solid& solid, model::Linearisation kind) {
+  const ElementSet& elements = solid.elements();
+  return {elements.n_nodes(), block_size_of(solid, kind), elements.cells(), solid.bonds().pairs(elements.cells())};
+}
+
+std::unique_ptr<SolidLinear> linear_of(const Solid& solid, model::Linearisation kind, const std::string& name,
+                                       const math::SymmetricBlockPattern& pattern) {
+  auto linear = make_linear(task_of(solid, kind), name, pattern, solid.unknowns().mask(), electrodes_in(solid, kind));
+  linear->respect(solid.bonds());
+  return linear;
+}
+
 }  // namespace
 
 SolidSolver::SolidSolver(const Solid& solid, model::Linearisation kind, const std::string& name)
     : solid_(solid),
       kind_(kind),
       open_(is_open(task_of(solid, kind), name)),
-      pattern_(solid.elements().n_nodes(), block_size_of(solid, kind), solid.elements().cells()),
+      pattern_(pattern_of(solid, kind)),
       slots_(solid.elements().slots_in(pattern_)),
+      fold_(solid.bonds(), pattern_),
       expected_negative_(task_of(solid, kind).n_negative),
-      linear_(make_linear(task_of(solid, kind), open_ ? "iterative" : name, pattern_, solid.unknowns().mask(),
-                          electrodes_in(solid, kind))),
+      linear_(linear_of(solid, kind, open_ ? "iterative" : name, pattern_)),
       turning_(solid.data()),
       responses_(solid.data(), linear_->matrix().n_rows(), pattern_.block_size(), solid.n_pressures(),
                  storage_for(task_of(solid, kind))),
@@ -81,8 +96,7 @@ SolidSolver::SolidSolver(const Solid& solid, model::Linearisation kind, const st
 }
 
 model::SolverSize SolidSolver::size_of(const Solid& solid, model::Linearisation kind, const std::string& name) {
-  const math::SymmetricBlockPattern pattern(solid.elements().n_nodes(), block_size_of(solid, kind),
-                                            solid.elements().cells());
+  const math::SymmetricBlockPattern pattern = pattern_of(solid, kind);
   const double block = pattern.block_size();
   model::SolverSize size{.matrix_bytes = 8.0 * block * block * pattern.n_blocks()};
   const SolverTask task = task_of(solid, kind);
@@ -120,10 +134,11 @@ void SolidSolver::weigh_pressures(const model::IntervalPoint& at) {
   // The longest waves of volume, with half a wave across the solid, are held least: by their inertia where dt is short.
   const double wave = step ? 2.0 * solid_.size() / (pi * at.dt) : 0.0;
   const double inertia = solid_.mass() / V.sum() * wave * wave;
+  const double factor = kind_ == Linearisation::rest ? augmentation_at_rest : augmentation;
   for (Eigen::Index cell = 0; cell < V.size(); ++cell) {
     const auto index = static_cast<std::size_t>(solid_.data().material_of_cell[static_cast<std::size_t>(cell)]);
     const double viscous = step ? viscosity_of(solid_.data().materials[index]) / at.dt : 0.0;
-    double stiffness = augmentation * (solid_.data().shear_moduli[index] + viscous + inertia);
+    double stiffness = factor * (solid_.data().shear_moduli[index] + viscous + inertia);
     if (solid_.filter().n_patterns() > 0) {
       stiffness = filtered_augmentation * (solid_.shear_modulus() + viscous + inertia);
     }
@@ -180,6 +195,7 @@ void SolidSolver::assemble(const model::IntervalPoint& at) {
   if (kind_ == Linearisation::rest) {
     solid_.loads().add_stiffness(solid_.positions(at.q), at.u, weights.stiffness, linear_->matrix());
   }
+  fold_.apply(linear_->matrix());
 }
 
 void SolidSolver::decide(const model::IntervalPoint& at) {
@@ -193,8 +209,7 @@ void SolidSolver::decide(const model::IntervalPoint& at) {
   const double mean_mass = 8.0 / 27.0 * solid_.mass() / (at.dt * pattern_.n_nodes());
   const double limit = stiffest_step(task_of(solid_, kind_).n_unknowns);
   if (stiffness_of_step(linear_->matrix(), solid_.unknowns().mask(), mean_mass) <= limit) return;
-  linear_ =
-      make_linear(task_of(solid_, kind_), "direct", pattern_, solid_.unknowns().mask(), electrodes_in(solid_, kind_));
+  linear_ = linear_of(solid_, kind_, "direct", pattern_);
 }
 
 bool SolidSolver::factorise(const model::IntervalPoint& at) {
@@ -295,7 +310,7 @@ void SolidSolver::unpack(const Eigen::VectorXd& from, SolidVector& to) const {
 void SolidSolver::solve_exactly() {
   const auto product = [this](const Eigen::VectorXd& d, Eigen::VectorXd& out) {
     unpack(d, direction_);
-    if (turning_.is_turned()) turning_.forth(direction_.x);
+    if (turning_.is_turned()) turn_forth(direction_.x);
     action_.apply(direction_, product_);
     if (turning_.is_turned()) turning_.back(product_.x);
     solve_lagged(product_, response_);
@@ -329,7 +344,7 @@ void SolidSolver::refine(SolidVector& out) {
   // With the pressures of the factor left out, the rows miss D p by what the factor's own solution says.
   rows_ = compliance_.cwiseProduct(out.p);
   out.p.setZero();
-  const math::KrylovLimits limits{.relative_tolerance = std::max(refined, 10.0 * linear_->accuracy()),
+  const math::KrylovLimits limits{.relative_tolerance = std::max(refined_, 10.0 * linear_->accuracy()),
                                   .max_iterations = max_refinements};
   // Beyond a loss of stability the complement has other signs, and so it has for filtered patterns.
   if (solid_.filter().n_patterns() > 0 ||
@@ -361,9 +376,15 @@ void SolidSolver::respond(const Eigen::VectorXd& p) {
   }
 }
 
+/// Neighbours turn by different angles: bonds hold in the world.
+void SolidSolver::turn_forth(Eigen::VectorXd& x) const {
+  turning_.forth(x);
+  solid_.bonds().follow(3, x);
+}
+
 void SolidSolver::expand(Eigen::VectorXd& dq, Eigen::VectorXd& dy) {
   if (!responses_.empty()) add_motion_of_bodies(dq);
-  if (turning_.is_turned()) turning_.forth(total_.x);
+  if (turning_.is_turned()) turn_forth(total_.x);
   solid_.positions(dq) = total_.x;
   if (dy.size() == 0) return;
   if (solid_.n_potentials() > 0) solid_.potentials(dy) = total_.phi;

@@ -55,6 +55,7 @@ class SolidSolver final : public model::SubstructureSolver {
   void make_exact_responses();
   void add_motion_of_bodies(const Eigen::VectorXd& dq);
   void solve_exactly();
+  void turn_forth(Eigen::VectorXd& x) const;
   void pack(const SolidVector& from, Eigen::VectorXd& to) const;
   void unpack(const Eigen::VectorXd& from, SolidVector& to) const;
   void refine(SolidVector& out);
@@ -69,6 +70,7 @@ class SolidSolver final : public model::SubstructureSolver {
   bool open_ = false;  ///< the first matrix decides on the solver
   math::SymmetricBlockPattern pattern_;
   std::vector<std::int32_t> slots_;
+  BondFold fold_;
   int expected_negative_ = 0;
   std::unique_ptr<SolidLinear> linear_;
   Turning turning_;

@@ -12,6 +12,19 @@ namespace {
 constexpr double accuracy_in_steps = 1e-3;
 constexpr double final_accuracy = 1e-13;
 
+/// Mass or viscosity leave a step's matrix a narrow spectrum, the more so the coarser the mesh.
+math::BlockChebyshev::Degrees degrees_for(model::Linearisation kind) {
+  switch (kind) {
+    case model::Linearisation::step:
+      return {.least = 3, .largest = 8};
+    case model::Linearisation::velocity:
+      return {.least = 1, .largest = 1};
+    case model::Linearisation::rest:
+      return {.least = 6, .largest = 6};
+  }
+  return {};
+}
+
 }  // namespace
 
 std::optional<Package> package_of(const std::string& name) {
@@ -63,9 +76,7 @@ math::FactorStorage storage_for(const SolverTask& task) {
 SolidIteration::Options iteration_for(const SolverTask& task, const std::string& name) {
   const bool step = task.kind == model::Linearisation::step;
   SolidIteration::Options options{.accuracy = step ? accuracy_in_steps : final_accuracy,
-                                  .degree = step                                          ? 3
-                                            : task.kind == model::Linearisation::velocity ? 1
-                                                                                          : 6,
+                                  .degrees = degrees_for(task.kind),
                                   .expected_negative = task.n_negative};
   // The block-diagonal preconditioner with the sign of the potentials needs half the iterations of MINRES.
   options.method = task.n_negative > 0 ? KrylovMethod::gmres : KrylovMethod::cg;

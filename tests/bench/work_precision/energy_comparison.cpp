@@ -18,7 +18,6 @@ namespace {
 const std::string ours = "muldi-sim";
 
 std::string step_text(double step) { return "dt " + short_number(step) + " ms"; }
-std::string tolerance_text(double tolerance) { return "tol " + short_number(tolerance); }
 
 /// Energy of the joint without viscosity: what is lost or won over a long time.
 class EnergyComparison {
@@ -63,7 +62,7 @@ class EnergyComparison {
         Samples samples;
         const double seconds =
             least_seconds(budget_, [&] { samples = integrate_with_cvode(*system_, method, tolerance, grid(20.0)); });
-        add(name_of(method), tolerance_text(tolerance), seconds, error_of(samples));
+        add(name_of(method), "tol " + short_number(tolerance), seconds, error_of(samples));
       }
     }
 #endif

@@ -30,6 +30,10 @@ class Threads(ProgramTest):
         for number in ("I", "II", "III", "IV"):
             self.assert_same(f"boxed_cube_{number}.yaml", "statics.steps=1", "dynamics.duration=1 ms", threads=(3,))
 
+    def test_solids_attached_to_one_another(self):
+        overrides = ("controls.supply.potential=3 kV", "statics.steps=1", "dynamics={duration: 0.3 ms, step: 0.1 ms}")
+        self.assert_same("bimorph.yaml", *overrides, "record.fields={active: [position, stress], passive: [position]}", threads=(3,))
+
     def test_solids_by_iterations(self):
         overrides = ("solids.cube.mesh.box.cells=[6, 6, 6]", "solver.linear=iterative", "dynamics.duration=0.1 ms", "record.every=1")
         self.assert_same("cube.yaml", *overrides, threads=(3,))

@@ -97,6 +97,22 @@ class Interrupted(BrokenRuns):
                 for name in ("whole.h5", "short.h5"):
                     (self.folder / name).unlink()
 
+    def test_attached_solids_go_on_like_the_longer_run(self):
+        overrides = [
+            "statics.steps=1",
+            "controls.supply.potential=3 kV",
+            "solids.active.mesh.box.cells=[6, 4, 2]",
+            "solids.passive.mesh.box.cells=[6, 2, 1]",
+            "solids.passive.attach=[]",
+            "solids.active.attach=[{where: z-, solid: passive, where_other: z+}]",
+            "record.fields={active: [position, velocity, stress], passive: [position]}",
+        ]
+        short, longer = (options([f"dynamics={{duration: {n} us, step: 100 us}}", *overrides]) for n in (700, 2000))
+        self.program("run", SCENES / "bimorph.yaml", "-o", "whole.h5", *longer)
+        self.program("run", SCENES / "bimorph.yaml", "-o", "short.h5", *short)
+        self.program("run", SCENES / "bimorph.yaml", "--resume", "short.h5", *longer)
+        self.assert_same_bits("whole.h5", "short.h5")
+
 
 class Refused(ProgramTest):
     """A record that is complete or of another scene is left byte for byte as it is."""

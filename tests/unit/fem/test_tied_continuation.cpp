@@ -54,6 +54,16 @@ TEST_F(TiedContinuation, ArcLengthFindsTheLimitThatLoadStepsBracket) {
   EXPECT_EQ(arc.result.critical[0].kind, CriticalPoint::Kind::limit);
   EXPECT_GT(arc.result.critical[0].load, natural.result.last_good);
   EXPECT_LT(arc.result.critical[0].load, natural.result.first_bad);
+  // Behind it one cell pulls in alone, which no mesh resolves: there the curve ends.
+  EXPECT_EQ(arc.result.end, SweepResult::End::completed);
+  EXPECT_EQ(arc.result.sentence.find("the curve ends at the load "), 0U) << arc.result.sentence;
+  EXPECT_NE(
+      arc.result.sentence.find(
+          ": cell 6 at [12, 0, 29.25] of solid 'right0' gives way alone: it keeps its volume as a whole, but of the "
+          "part at one of its Gauss points "),
+      std::string::npos)
+      << arc.result.sentence;
+  EXPECT_LT(arc.loads.back(), arc.result.critical[0].load);
 }
 
 }  // namespace

@@ -33,10 +33,10 @@ TEST(Ties, GatherIsTheTransposeOfFollow) {
   VectorXd v(model->n_q());
   VectorXd f(model->n_q());
   for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = any(random), f[i] = any(random);
-  part.follow(v);
+  part.follow({}, v);
   part.keep_free(v);  // zeroes what follow wrote
   VectorXd followed = v;
-  part.follow(followed);
+  part.follow({}, followed);
   VectorXd gathered = f;
   part.gather(gathered);
   EXPECT_NEAR((followed - v).dot(f), v.dot(gathered - f), 1e-12);

@@ -31,7 +31,7 @@ Solved solve(const test::BoxProblem& problem, int solver, int degree = 6) {
   const SymmetricBlockPattern pattern = test::box_pattern(problem);
   SymmetricBlockMatrix matrix = test::box_matrix(problem, pattern);
   matrix.constrain(test::box_mask(problem));
-  CoupledPreconditioner preconditioner(pattern, degree);
+  CoupledPreconditioner preconditioner(pattern, {.least = degree, .largest = degree});
   EXPECT_TRUE(preconditioner.update(matrix));
   const PotentialSign sign = solver == 2 ? PotentialSign::of_the_matrix : PotentialSign::positive;
   const auto a = [&](const Eigen::VectorXd& u, Eigen::VectorXd& v) { matrix.multiply(u, v); };
@@ -91,7 +91,7 @@ TEST(CoupledPreconditioner, IsSymmetricAndPositive) {
   const SymmetricBlockPattern pattern = test::box_pattern(problem);
   SymmetricBlockMatrix matrix = test::box_matrix(problem, pattern);
   matrix.constrain(test::box_mask(problem), 7.0);  // positive in rows of the potential too
-  CoupledPreconditioner preconditioner(pattern, 3);
+  CoupledPreconditioner preconditioner(pattern, {.least = 3, .largest = 3});
   ASSERT_TRUE(preconditioner.update(matrix));
   EXPECT_EQ(preconditioner.potential_sign(), -1.0);
   Eigen::MatrixXd p(pattern.n_rows(), pattern.n_rows());
@@ -104,6 +104,26 @@ TEST(CoupledPreconditioner, IsSymmetricAndPositive) {
   const Eigen::MatrixXd symmetric = 0.5 * (p + p.transpose());
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric).eigenvalues().minCoeff(), 0.0);
   EXPECT_FLOAT_EQ(static_cast<float>(p(3, 3)), 1.0F / 7.0F);
+}
+
+TEST(CoupledPreconditioner, TakesTheDegreeThatFitsTheSpectrum) {
+  const auto degree = [](double mass, BlockChebyshev::Degrees degrees) {
+    test::BoxProblem problem = dynamic_problem(8);
+    problem.mass = mass;
+    const SymmetricBlockPattern pattern = test::box_pattern(problem);
+    SymmetricBlockMatrix matrix = test::box_matrix(problem, pattern);
+    matrix.constrain(test::box_mask(problem));
+    CoupledPreconditioner preconditioner(pattern, degrees);
+    EXPECT_TRUE(preconditioner.update(matrix));
+    return preconditioner.displacement().degree();
+  };
+  // Consistent mass alone, with eigenvalues from 1/8 to 27/8, whose ends the estimate does not quite reach: 5/4
+  // sqrt(27) is 6.5.
+  EXPECT_EQ(degree(1e6, {.least = 1, .largest = 8}), 6);
+  EXPECT_EQ(degree(1e6, {.least = 7, .largest = 8}), 7);
+  EXPECT_EQ(degree(1e6, {.least = 1, .largest = 4}), 4);
+  EXPECT_EQ(degree(0.0, {.least = 1, .largest = 8}), 8);
+  EXPECT_EQ(degree(0.0, {.least = 1, .largest = 5}), 5);
 }
 
 TEST(CoupledPreconditioner, SaysThatTheDisplacementPartIsNotDefinite) {
