@@ -107,15 +107,18 @@ std::size_t Hdf5Recorder::block_rows(const SeriesSpec& series, std::size_t propo
 void Hdf5Recorder::do_start() {
   if (output_.mode == Output::Mode::resume) {
     resume();
+    reserve_.try_take();
   } else {
     create();
   }
 }
 
 void Hdf5Recorder::create() {
+  reserve_.take();
   claim(output_);
   live_ = LiveFile(output_.path);
-  created_ = std::async(std::launch::async, [this] {
+  created_ = std::async(reserve_.is_limited() ? std::launch::deferred : std::launch::async, [this] {
+    const base::AddressReserve::Use use(reserve_);
     try {
       file_ = hdf5::File::create(output_.path);
       create_content();
@@ -127,6 +130,7 @@ void Hdf5Recorder::create() {
       throw;
     }
   });
+  if (reserve_.is_limited()) created_.wait();
 }
 
 void Hdf5Recorder::wait_until_created() {
@@ -265,6 +269,7 @@ void Hdf5Recorder::do_flush(const Checkpoint* checkpoint, std::span<const std::i
     file_.flush();
   };
   wait_until_created();
+  const base::AddressReserve::Use use(reserve_);
   try {
     write(false);
     write(true);
@@ -279,6 +284,7 @@ void Hdf5Recorder::do_flush(const Checkpoint* checkpoint, std::span<const std::i
 
 void Hdf5Recorder::do_close(const Ending& ending, const Late& late) {
   wait_until_created();
+  reserve_.release();
   try {
     data_sets_.clear();
     checkpoints_.reset();

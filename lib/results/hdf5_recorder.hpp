@@ -11,9 +11,12 @@
 /// file holds all rows of the last flush that succeeded, and the status `write_error` where that can still be written.
 ///
 /// A new file is made in a thread of its own, beside the first steps: hundreds of data sets take milliseconds. Whether
-/// the path can be written is known before; other failures come out of the first flush.
+/// the path can be written is known before; other failures come out of the first flush. Where addresses are limited
+/// (`ulimit -v`) it is made before the first steps: the library does not survive a refused allocation, so that some
+/// megabytes are kept back for whatever it does.
 #include <future>
 
+#include "base/address_reserve.hpp"
 #include "results/checkpoint_store.hpp"
 #include "results/hdf5_file.hpp"
 #include "results/live_file.hpp"
@@ -64,7 +67,11 @@ class Hdf5Recorder final : public Recorder {
   void drop();
   void rescue(const std::string& sentence);
 
+  /// What the library takes beside the rows, and some more.
+  static constexpr std::size_t kept_back = 16UL << 20U;
+
   Output output_;
+  base::AddressReserve reserve_{kept_back};
   LiveFile live_;
   hdf5::File file_;
   std::vector<hdf5::DataSet> data_sets_;  ///< in the order of the columns; opened by their first rows

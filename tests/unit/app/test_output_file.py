@@ -151,6 +151,7 @@ class FullDisk(ProgramTest):
 
         return self.program("run", TRUNK, "-o", "a.h5", code=4, preexec_fn=limit, **options)
 
+    @unittest.skipIf("MULDI_COUNTS" in os.environ, "the counts of lines are written within the same limit, and said so")
     def test_without_room_for_the_start_nothing_is_left(self):
         done = self.run_within(50_000)
         self.assertRegex(done.stderr, r"^error: cannot write 'a.h5': File too large\n$")

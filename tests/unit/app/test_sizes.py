@@ -2,9 +2,10 @@
 """What is too large is refused with a sentence before it is built: test_sizes.py MULDI_SIM."""
 
 import resource
+import subprocess
 import unittest
 
-from program import SCENES, ProgramTest, options
+from program import PROGRAM, SCENES, ProgramTest, options
 
 
 class Refused(ProgramTest):
@@ -100,6 +101,18 @@ class OutOfMemory(ProgramTest):
 
     def test_is_foreseen(self):
         self.assertRegex(self.within(98), r"error: solids\.cube: a mesh of 27000 cells takes [\d.]+ GiB, more than the 0\.0957 GiB of this machine: take fewer cells$")
+
+    def test_is_told_wherever_it_ends(self):
+        """Libraries that do not survive a refused allocation have something kept back for them."""
+        arguments = ["run", SCENES / "cube.yaml", "-o", "a.h5", "--force", *options(["solids.cube.mesh.box.cells=[14, 14, 14]", "dynamics.duration=0.003"])]
+        told = 0
+        for kibi in range(112_000, 124_000, 1_000):
+            command = [str(PROGRAM), *map(str, arguments)]
+            limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (kibi << 10, kibi << 10))
+            done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, check=False, preexec_fn=limit)
+            self.assertIn(done.returncode, (0, 4), f"{kibi} KiB\n{done.stderr}")
+            told += "error: out of memory: `muldi-sim validate` estimates" in done.stderr
+        self.assertGreater(told, 0)
 
     def test_is_told(self):
         self.assertEqual(self.within(360), "error: out of memory: `muldi-sim validate` estimates what a scene takes; take fewer cells or bodies")

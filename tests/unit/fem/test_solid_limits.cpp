@@ -110,10 +110,11 @@ TEST(SolidLimits, ALoadTooLargeForOneStepLeavesTheStateAndIsReported) {
   statics::Sweep sweep(*model, {0.0}, {1.0}, {.from = 1e3, .to = 2e3, .steps = 2});
   const statics::SweepResult result = sweep.run(state, {});
   EXPECT_EQ(result.end, statics::SweepResult::End::loss_of_equilibrium);
-  EXPECT_EQ(
-      result.sentence,
+  // How far beyond zero the last iterate is depends on round-off.
+  const std::string said =
       "no stable equilibrium at the first load: the forces move on until solid 'box': cell 7 at [0.75, 0.75, 0.75] "
-      "is inverted (det F -0.0803)");
+      "is inverted (det F -0.08";
+  EXPECT_EQ(result.sentence.substr(0, said.size()), said) << result.sentence;
 }
 
 TEST(SolidLimits, AnEquilibriumHoldsWhatIsPrescribed) {
