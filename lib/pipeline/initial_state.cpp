@@ -211,9 +211,9 @@ model::Slice slice_of(const fem::SolidRecords& records) {
 }
 
 /// Adds to v (n_q) the velocities of solids: with the bodies that they are tied to, which move by `rates`, and the
-/// rigid motions that the scene gives to them; what is prescribed moves as the controls say, which change at rates du.
+/// rigid motions that the scene gives to them; what is prescribed or follows others is left to Substructure::follow.
 void add_velocities(const scene::Scene& scene, const build::BuiltModel& built, const variational::State& state,
-                    const Eigen::VectorXd& rates, std::span<const double> du, Eigen::VectorXd& v) {
+                    const Eigen::VectorXd& rates, Eigen::VectorXd& v) {
   if (built.solids.empty()) return;
   LedSolids led(built, scene.solver.tolerance);
   if (led.any() && !rates.isZero(0.0)) {
@@ -240,7 +240,6 @@ void add_velocities(const scene::Scene& scene, const build::BuiltModel& built, c
       v.segment<3>(first) += velocity + omega.cross(Eigen::Vector3d(q.segment<3>(first)) - centre);
     }
   }
-  for (const auto& part : built.model->substructures) part->follow(du, v);
 }
 
 }  // namespace
@@ -364,7 +363,8 @@ Outcome initial_state(const scene::Scene& scene, const build::BuiltModel& built,
   std::optional<variational::ControlRates> control_rates;
   std::span<const double> du;
   if (scene.dynamics) du = control_rates.emplace(*built.model, scene.dynamics->step).at(0.0, variational::Side::after);
-  add_velocities(scene, built, state, added, du, v);
+  add_velocities(scene, built, state, added, v);
+  for (const auto& part : built.model->substructures) part->follow(du, v);
   const auto frame = manifold.make_frame();
   manifold.update(state.x, state.q, *frame);
   if (!scene.initial.momentum.empty()) rates += rates_of_momentum(built, state.x, wanted_momenta(scene, built));

@@ -15,6 +15,14 @@ std::unique_ptr<StepMethod> make_method(const model::Model& model, const LoopOpt
   return std::make_unique<ExplicitStepper>(model, options.dt);
 }
 
+void count(const StepReport& report, LoopStatistics& statistics) {
+  ++statistics.steps;
+  statistics.iterations += report.iterations;
+  statistics.factorisations += report.factorisations;
+  statistics.largest_residual = std::max(statistics.largest_residual, report.residual);
+  statistics.largest_rotation = std::max(statistics.largest_rotation, report.rotation);
+}
+
 }  // namespace
 
 TimeLoop::TimeLoop(const model::Model& model, LoopOptions options)
@@ -87,11 +95,7 @@ LoopResult TimeLoop::run(State& state, Ledger& ledger, StepReport& last, const L
     if (nodes_.moves()) ledger.external += half_work(stepper_->constraint_force(), state);
     ledger.source += jump;
     if (supply_.is_kept()) ledger.supply = supply_after_;
-    ++result.statistics.steps;
-    result.statistics.iterations += report.iterations;
-    result.statistics.factorisations += report.factorisations;
-    result.statistics.largest_residual = std::max(result.statistics.largest_residual, report.residual);
-    result.statistics.largest_rotation = std::max(result.statistics.largest_rotation, report.rotation);
+    count(report, result.statistics);
     if (callbacks.warn && !warned_rotation && report.rotation > options_.step.warn_rotation) {
       warned_rotation = true;
       callbacks.warn(report, state.t);
