@@ -24,6 +24,7 @@ namespace {
 constexpr std::size_t page_bytes = 4096;  // no larger than the kernel's: a page is written as a whole or not at all
 constexpr std::size_t max_pages_a_call = 1024;
 constexpr std::uint64_t room = std::uint64_t{1} << 20;
+constexpr std::uint64_t spare = 4 * room;
 using Page = std::array<unsigned char, page_bytes>;
 using Pages = std::map<std::uint64_t, Page>;
 using Order = Writing::Order;
@@ -91,12 +92,13 @@ bool set_size(const OpenFile& file, std::uint64_t size) {
 /// Bytes beyond the end that the superblock states hurt nobody.
 void set_size_if_possible(const OpenFile& file, std::uint64_t size) { static_cast<void>(set_size(file, size)); }
 
-/// Makes the file on the disk, and its superblock, reach beyond `end`. The room is sparse; where it is not to be had
-/// (file size limit) the file does without.
+/// Makes the file on the disk, and its superblock, reach beyond `end`, the file further than the superblock: a reader
+/// that asks for the size, then reads the superblock, must not find there an end beyond that size, which to the library
+/// is a truncated file. All of it is sparse; where it is not to be had (file size limit) the file does without.
 bool claim(OpenFile& file, std::uint64_t end) {
   const std::uint64_t present = size_on_disk(file);
   std::uint64_t next = end + room;
-  if (present < next && !set_size(file, next)) {
+  if (present < next + spare && !set_size(file, next + spare) && present < next && !set_size(file, next)) {
     next = end;
     if (present < next && !set_size(file, next)) return false;
   }

@@ -5,12 +5,15 @@ import fcntl
 import os
 import pathlib
 import re
+import time
 
 import h5py
 import numpy
 import yaml
 
 from guarded import reading
+
+ATTEMPTS = 5  # to open a file that is being written
 
 
 class WrongInput(Exception):
@@ -82,10 +85,13 @@ def is_being_written(path):
 
 def opened(path):
     """The file, as readers beside a writer open it if there is one: these try again, ever more slowly, where a check sum does not fit,
-    which in a damaged file never ends."""
-    if is_being_written(path):
+    which in a damaged file never ends. A file may also grow between two looks that the library takes at its beginning."""
+    for _ in range(ATTEMPTS):
+        if not is_being_written(path):
+            break
         with contextlib.suppress(OSError):
             return h5py.File(path, "r", swmr=True)
+        time.sleep(0.01)
     return h5py.File(path, "r")
 
 

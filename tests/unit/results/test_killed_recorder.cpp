@@ -59,6 +59,26 @@ TEST(RunningRecorder, CanBeReadAtAnyMoment) {
   kill(child);
 }
 
+TEST(RunningRecorder, LetsTheFileGrowBeforeItsSuperblockSays) {
+  // Readers of the library ask for the size first, then read the superblock; meanwhile the file goes on growing.
+  const Scratch scratch;
+  Hdf5Recorder recorder({.path = scratch / "a.h5"});
+  Recording recording(recorder);
+  recorder.start();
+  std::uint64_t first = 0, last = 0;
+  for (std::int64_t i = 0; i < 200; ++i) {
+    const std::uint64_t size = std::filesystem::file_size(scratch / "a.h5");
+    recording.append_all(i * 256, (i + 1) * 256);
+    recorder.flush();
+    last = read_superblock(scratch / "a.h5")->end_of_file;
+    if (i == 0) first = last;
+    if (i > 0) {
+      ASSERT_GE(size, last) << "flush " << i;
+    }
+  }
+  EXPECT_GT(last, first + (std::uint64_t{4} << 20)) << "several times";
+}
+
 TEST(KilledRecorder, LeavesCompleteRowsAndTheStatusRunning) {
   std::size_t most = 0;
   for (useconds_t i = 0; i < 20; ++i) {
