@@ -38,7 +38,7 @@ void BondBuilder::unite(int a, int b, const scene::Origin& origin) {
 void BondBuilder::fix(int node, std::vector<int> to, std::vector<double> weights, const scene::Origin& origin) {
   Fixed fixed{.to = {}, .origin = &origin};
   for (std::size_t k = 0; k < to.size(); ++k) {
-    if (weights[k] > no_weight) fixed.to[to[k]] += weights[k];
+    if (std::abs(weights[k]) > no_weight) fixed.to[to[k]] += weights[k];
   }
   said_.emplace_back(node, std::move(fixed));
 }

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "build/build_solids.hpp"
 #include "build/build_ties.hpp"
 #include "build/place_bodies.hpp"
@@ -114,9 +115,15 @@ class ConditionBuilder {
         const auto [at, is_new] = owner_of_node.try_emplace(node, electrode.name);
         const bool driven = !prescribed_.add(node, 3, {.control = -2}) || !prescribed_.is_new();
         if (is_new && !driven) continue;
-        const std::string other = is_new ? "a given potential" : "electrode '" + at->second + "'";
-        context_.errors.push_back(scene::error_at(entry.origin, "floating electrode '" + electrode.name + "' shares " +
-                                                                    node_name(mesh_, node) + " with " + other));
+        const auto* said = entry.value.electrodes.find(electrode.name);
+        const fem::Vec3& X = mesh_.nodes[static_cast<std::size_t>(node)];
+        context_.errors.push_back(scene::error_at(
+            said != nullptr ? said->value.origin : entry.origin,
+            base::format(
+                "floating electrode '{}' has {} at [{:.6g}, {:.6g}, {:.6g}] in common with {}: what floats has "
+                "one unknown potential; select nodes that nothing else holds",
+                electrode.name, node_name(mesh_, node), X[0], X[1], X[2],
+                is_new ? "a condition or an electrode of given potential" : "electrode '" + at->second + "'")));
         return;
       }
     }

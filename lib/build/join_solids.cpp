@@ -8,6 +8,7 @@
 #include "build/bond_builder.hpp"
 #include "fem/mesh/selection.hpp"
 #include "fem/solid/face_projection.hpp"
+#include "fem/solid/mortar.hpp"
 #include "fem/solid/solid_unknowns.hpp"
 
 namespace muldi::build {
@@ -183,22 +184,45 @@ class Joiner {
     if (!nodes.error.empty()) errors_.push_back(scene::error_at(said.where.origin, nodes.error));
     if (!faces.error.empty()) errors_.push_back(scene::error_at(said.where_other->origin, faces.error));
     if (!nodes.error.empty() || !faces.error.empty()) return;
-    corners_.clear();
-    for (const fem::CellFace& face : faces.faces) {
-      corners_.push_back(fem::face_nodes(*parts_[other]->mesh, face));
-      for (int& corner : corners_.back()) corner += joined_.data.members[other].first_node;
-    }
+    corners_ = face_nodes(other, faces.faces);
     tolerance_ = closing_gap * diagonal(parts_[k]->data.X);
     JoinedNodes joint{.name = parts_[k]->entry->name, .other = parts_[other]->entry->name};
     widest_ = {};
     held_.clear();
+    const std::set<int> follow = bind_by_mortar(k, said);
     for (const int node : nodes.nodes) {
       joint.nodes.push_back(joined_.data.members[k].first_node + node);
-      place(joint.nodes.back(), said.origin);
+      if (follow.count(joint.nodes.back()) == 0) place(joint.nodes.back(), said.origin);
     }
     joined_.joints.push_back(std::move(joint));
     if (widest_.gap > tolerance_) return report(k, other, said.origin);
     note_loose_nodes(k, other, said);
+  }
+
+  /// Faces of a member, with nodes of the whole.
+  std::vector<fem::FaceNodes> face_nodes(std::size_t member, const std::vector<fem::CellFace>& faces) const {
+    std::vector<fem::FaceNodes> found;
+    found.reserve(faces.size());
+    for (const fem::CellFace& face : faces) {
+      found.push_back(fem::face_nodes(*parts_[member]->mesh, face));
+      for (int& node : found.back()) node += joined_.data.members[member].first_node;
+    }
+    return found;
+  }
+
+  /// Where neither mesh refines the other; the nodes that need no place then.
+  std::set<int> bind_by_mortar(std::size_t k, const scene::SolidAttachment& said) {
+    std::set<int> follow;
+    const fem::Selected faces = fem::MeshSelection(*parts_[k]->mesh).faces(said.where.selector);
+    if (!faces.error.empty()) return follow;
+    for (fem::NodeSum& sum : fem::mortar_sums(joined_.data.X, face_nodes(k, faces.faces), corners_, tolerance_)) {
+      follow.insert(sum.node);
+      for (std::size_t i = 0; i < sum.to.size(); ++i) {
+        if (std::abs(sum.weights[i]) > BondBuilder::no_weight) held_.push_back(sum.to[i]);
+      }
+      bonds_.fix(sum.node, std::move(sum.to), std::move(sum.weights), said.origin);
+    }
+    return follow;
   }
 
   /// Nodes of the other solid inside the joint that no node holds can leave it.
@@ -305,8 +329,8 @@ class Joiner {
   JoinedSolid& joined_;
   std::vector<base::Diagnostic>& errors_;
   BondBuilder bonds_;
-  std::vector<std::array<int, 4>> corners_;  // of the faces of the other solid
-  std::vector<int> held_;                    // of these, by nodes of the attachment
+  std::vector<fem::FaceNodes> corners_;  // of the faces of the other solid
+  std::vector<int> held_;                // of these, by nodes of the attachment
   double tolerance_ = 0.0;
   Widest widest_;
 };

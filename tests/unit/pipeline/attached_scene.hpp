@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/text.hpp"
 #include "fem/mesh/generate.hpp"
 #include "golden/scene_run.hpp"
 #include "scene/read_scene.hpp"
@@ -51,15 +52,16 @@ inline Eigen::Index node_at(const Eigen::Matrix3Xd& X, const Eigen::Vector3d& pl
 }
 
 /// Largest difference of a nodal field between solids and the nodes of `whole` at the same reference positions, over
-/// all rows; `folder`: "solids/" or "statics/solids/"; `width`: entries of a node.
+/// all rows; `folder`: "solids/" or "statics/solids/".
 inline double difference(const golden::SceneRun& whole, const golden::SceneRun& cut, const std::string& folder,
-                         const std::vector<std::string>& solids, const std::string& field, Eigen::Index width) {
+                         const std::vector<std::string>& solids, const std::string& field) {
   const Eigen::Matrix3Xd of_whole = reference(whole, "whole");
   double largest = 0.0;
   for (const std::string& name : solids) {
     const Eigen::Matrix3Xd X = reference(cut, name);
-    const auto a = whole.rows(folder + "whole/" + field);
-    const auto b = cut.rows(folder + name + "/" + field);
+    const auto a = whole.rows(base::format("{}whole/{}", folder, field));
+    const auto b = cut.rows(base::format("{}{}/{}", folder, name, field));
+    const Eigen::Index width = a.rows() / of_whole.cols();
     for (Eigen::Index node = 0; node < X.cols(); ++node) {
       const Eigen::Index same = node_at(of_whole, X.col(node));
       largest = std::max(
