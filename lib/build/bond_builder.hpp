@@ -26,6 +26,8 @@ class BondBuilder {
   void unite(int a, int b, const scene::Origin& origin);
   /// Fixes a node to others; `origin`: of the attachment that says so.
   void fix(int node, std::vector<int> to, std::vector<double> weights, const scene::Origin& origin);
+  /// Whether all nodes that have a weight are given what the node is given: displacements, ties, potentials.
+  bool agree(int node, const std::vector<int>& to, const std::vector<double>& weights);
   /// Makes the bonds, moves the bonded nodes to where they belong, and hands what is prescribed on bonded nodes to
   /// those that they are fixed to. Errors where nodes are fixed to two places or in a ring, or where conditions
   /// contradict one another.
@@ -39,6 +41,8 @@ class BondBuilder {
     const scene::Origin* origin = nullptr;
   };
 
+  /// What is prescribed on a node: a value, or (control -2) the body that it is tied to.
+  using Given = std::map<int, fem::Value>;
   int root(int node);
   std::string name_of(int node) const;
   bool resolve();
@@ -69,6 +73,7 @@ class BondBuilder {
   std::map<int, Fixed> fixed_;                   // by root
   std::map<int, std::optional<Sum>> sums_;       // by fixed root, once resolved; none: on the way
   std::map<int, int> bond_of_node_;
+  std::optional<std::map<int, Given>> given_;  // by node, once asked for
   std::vector<char> busy_;
 };
 

@@ -1,5 +1,6 @@
 /// What is prescribed on bonded nodes goes to the nodes that they are fixed to, or is what holds there already.
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "build/bond_builder.hpp"
@@ -14,6 +15,31 @@ bool same(const fem::Value& a, const fem::Value& b) {
 constexpr const char* differently = ", and the nodes that are one with it are held differently: ";
 
 }  // namespace
+
+bool BondBuilder::agree(int node, const std::vector<int>& to, const std::vector<double>& weights) {
+  if (!given_) {
+    given_.emplace();
+    for (const fem::PrescribedDisplacement& said : data_.displacements) {
+      (*given_)[said.node][said.component] = said.value;
+    }
+    for (const fem::PrescribedPotential& said : data_.potentials) (*given_)[said.node][3] = said.value;
+    for (const fem::Tie& tie : data_.ties) {
+      (*given_)[tie.node][4] = {.control = -2, .constant = static_cast<double>(tie.host)};
+    }
+  }
+  const auto of_node = given_->find(node);
+  if (of_node == given_->end()) return true;
+  for (std::size_t k = 0; k < to.size(); ++k) {
+    if (std::abs(weights[k]) <= no_weight) continue;
+    const auto of_other = given_->find(to[k]);
+    if (of_other == given_->end()) return false;
+    for (const auto& [unknown, value] : of_node->second) {
+      const auto found = of_other->second.find(unknown);
+      if (found == of_other->second.end() || !same(found->second, value)) return false;
+    }
+  }
+  return true;
+}
 
 void BondBuilder::give() {
   data_.given.assign(parent_.size(), 0);

@@ -210,12 +210,25 @@ class Joiner {
     return found;
   }
 
-  /// Where neither mesh refines the other; the nodes that need no place then.
+  /// Where neither mesh refines the other; the nodes that need no place then. What is prescribed on one of them and not
+  /// on all that it would follow can only hold where it lies.
   std::set<int> bind_by_mortar(std::size_t k, const scene::SolidAttachment& said) {
-    std::set<int> follow;
     const fem::Selected faces = fem::MeshSelection(*parts_[k]->mesh).faces(said.where.selector);
-    if (!faces.error.empty()) return follow;
-    for (fem::NodeSum& sum : fem::mortar_sums(joined_.data.X, face_nodes(k, faces.faces), corners_, tolerance_)) {
+    if (!faces.error.empty()) return {};
+    const std::vector<fem::FaceNodes> own = face_nodes(k, faces.faces);
+    std::set<int> placed;
+    std::vector<fem::NodeSum> sums;
+    for (bool all_agree = false; !all_agree;) {
+      all_agree = true;
+      sums = fem::mortar_sums(joined_.data.X, own, corners_, tolerance_, placed);
+      for (const fem::NodeSum& sum : sums) {
+        if (bonds_.agree(sum.node, sum.to, sum.weights)) continue;
+        placed.insert(sum.node);
+        all_agree = false;
+      }
+    }
+    std::set<int> follow;
+    for (fem::NodeSum& sum : sums) {
       follow.insert(sum.node);
       for (std::size_t i = 0; i < sum.to.size(); ++i) {
         if (std::abs(sum.weights[i]) > BondBuilder::no_weight) held_.push_back(sum.to[i]);

@@ -153,14 +153,15 @@ std::set<int> corners_of(const Eigen::VectorXd& X, const std::vector<Side>& side
 }  // namespace
 
 std::vector<NodeSum> mortar_sums(const Eigen::VectorXd& X, const std::vector<FaceNodes>& attached,
-                                 const std::vector<FaceNodes>& others, double tolerance) {
+                                 const std::vector<FaceNodes>& others, double tolerance, const std::set<int>& placed) {
   const FaceOverlap overlap(X, others, tolerance);
   if (std::all_of(attached.begin(), attached.end(), [&](const auto& face) { return overlap.one_holds(face); })) {
     return {};
   }
   const std::vector<Side> sides = outline(attached);
-  const std::set<int> corners = corners_of(X, sides);
-  std::set<int> on_outline;
+  std::set<int> corners = corners_of(X, sides);
+  corners.insert(placed.begin(), placed.end());
+  std::set<int> on_outline = placed;
   Conditions along_sides(others, corners);
   for (const Side& side : sides) {
     auto points = overlap.on_edge(side.a, side.b, *side.face);

@@ -9,6 +9,7 @@
 /// conditions along these, and nodes inside by those on the faces: whatever holds sides or corners of both solids,
 /// such as planes of symmetry, is kept. Multipliers of nodes that are placed first go to their neighbours.
 #include <Eigen/Core>
+#include <set>
 #include <vector>
 
 #include "fem/solid/face_overlap.hpp"
@@ -22,11 +23,12 @@ struct NodeSum {
   std::vector<double> weights = {};
 };
 
-/// The sums of all nodes of `attached` but the corners of its outline, which are in the sums of others as are the nodes
-/// of the sides. `X` (3 a node): positions; `others`: faces of the other mesh; `tolerance`: as in FaceOverlap. Empty
-/// where a face of the other mesh holds each of the attached ones whole, so that following points is exact, and where
-/// the faces are curved or not wholly on the others.
+/// The sums of all nodes of `attached` but the corners of its outline and those `placed`, which are in the sums of
+/// others as are the nodes of the sides. `X` (3 a node): positions; `others`: faces of the other mesh. Empty where a
+/// face of the other mesh holds each of the attached ones whole, so that following points is exact, and where the faces
+/// are curved or not wholly on the others, to `tolerance` as in FaceOverlap.
 std::vector<NodeSum> mortar_sums(const Eigen::VectorXd& X, const std::vector<FaceNodes>& attached,
-                                 const std::vector<FaceNodes>& others, double tolerance);
+                                 const std::vector<FaceNodes>& others, double tolerance,
+                                 const std::set<int>& placed = {});
 
 }  // namespace muldi::fem

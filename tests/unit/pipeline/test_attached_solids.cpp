@@ -142,52 +142,6 @@ TEST(AttachedSolid, TwoMaterialsInSeriesStretchByTheirOwnLaws) {
   EXPECT_NEAR(confined_stress(0.5, 0.4, t), 0.1, 1e-12);
 }
 
-/// Cells of two cubes, the second attached to the first.
-struct Pair {
-  const char* name;
-  const char* low;
-  const char* up;
-};
-
-class StretchedPair : public ::testing::TestWithParam<Pair> {};
-
-TEST_P(StretchedPair, PassesAHomogeneousStretch) {
-  const std::string rollers =
-      "      - {where: x-, displacement: [0, ~, ~]}\n      - {where: y-, displacement: [~, 0, ~]}\n";
-  const SceneRun run(boxes({{"low", "[1, 1, 1]", GetParam().low, "[0.5, 0.5, 0.5]",
-                             "    conditions:\n      - {where: z-, displacement: [~, ~, 0]}\n" + rollers},
-                            {"up", "[1, 1, 1]", GetParam().up, "[0.5, 0.5, 1.5]",
-                             "    conditions:\n      - {where: z+, traction: [0, 0, 0.1]}\n" + rollers +
-                                 "    attach: [{where: z-, solid: low, where_other: z+}]\n"}},
-                           rubber, "mean_dilatation",
-                           "statics: {steps: 1}\nrecord: {fields: {low: [position, stress], up: [position, stress]}}\n"
-                           "solver: {tolerance: 1e-13}\n"));
-  ASSERT_TRUE(run.outcome().completed()) << run.outcome().sentence;
-  // One and the same F = diag(a, a, c) in both: positions are F X.
-  const Eigen::Vector3d corner = run.last("statics/solids/up/position").tail<3>();
-  const Eigen::Vector3d stretch(corner[0], corner[1], 0.5 * corner[2]);
-  EXPECT_GT(stretch[2], 1.1);
-  for (const char* name : {"low", "up"}) {
-    const std::string folder = std::string("statics/solids/") + name + "/";
-    const Eigen::Matrix3Xd X = reference(run, name);
-    const Eigen::VectorXd last = run.last(folder + "position");
-    const auto x = last.reshaped(3, X.cols());
-    EXPECT_LT((x - stretch.asDiagonal() * X).cwiseAbs().maxCoeff(), 1e-11) << name;
-    const Eigen::VectorXd stress = run.last(folder + "stress");
-    for (Eigen::Index cell = 0; cell < stress.size() / 6; ++cell) {
-      EXPECT_NEAR(stress[6 * cell + 2] * stretch[0] * stretch[1], 0.1, 1e-10);
-    }
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Meshes, StretchedPair,
-                         ::testing::Values(Pair{"TheOneRefinesTheOther", "[2, 3, 2]", "[4, 6, 3]"},
-                                           Pair{"NeitherRefinesTheOther", "[2, 2, 2]", "[3, 3, 2]"},
-                                           Pair{"TheCoarserIsAttached", "[4, 3, 2]", "[2, 2, 2]"},
-                                           Pair{"InOneDirectionOnly", "[3, 2, 2]", "[4, 4, 2]"},
-                                           Pair{"AStripOfOneCell", "[3, 1, 2]", "[5, 1, 2]"}),
-                         [](const auto& one) { return std::string(one.param.name); });
-
 TEST(AttachedSolid, IsSummedUpAsOneWithWhatItsJointEliminates) {
   const scene::Scene scene = boxes({{"low", "[1, 1, 1]", "[2, 2, 2]", "[0, 0, 0.5]", attach_up},
                                     {"up", "[1, 1, 1]", "[2, 2, 2]", "[0, 0, 1.5]", ""}},
